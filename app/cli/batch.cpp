@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/library_place.h"
-#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/batch/farm.h"
@@ -29,9 +29,8 @@
 #include "app/jobs/batch/survey.h"
 #include "app/jobs/report.h"
 #include "batch/session_list.h"
-#include "core/compression.h"
+#include "core/field_check.h"
 #include "core/files.h"
-#include "core/number.h"
 #include "core/solve.h"
 
 namespace weft::app {
@@ -39,35 +38,11 @@ namespace {
 
 struct PlanArguments {
   PlanBatchOptions options;
-  std::string find, within;
+  std::string find;
   std::filesystem::path list;
   LibraryPlace place;
   library::Query query;
-  std::vector<std::string> calibrations;
-  int sample = 50;
-  double task_minutes = 10;
 };
-
-struct RunArguments {
-  RunBatchOptions options;
-  std::optional<int> array_from;
-  std::string memory;
-  bool merge = false;
-};
-
-// A number with the unit behind it, in the last unit of the list; none where it is something else.
-std::optional<double> with_unit(const std::string& text, const std::vector<std::pair<char, double>>& units) {
-  if (text.empty()) return {};
-  const std::optional<double> number = as_number(std::string_view(text).substr(0, text.size() - 1));
-  const auto unit = std::ranges::find(units, text.back(), &std::pair<char, double>::first);
-  if (!number || !(*number > 0) || unit == units.end()) return {};
-  return *number * unit->second;
-}
-
-Error no_amount(const char* option, const std::string& text, const char* remedy) {
-  return {ErrorKind::kUsage, "an amount cannot be read", option,
-          "\"" + text + "\" has no unit or is no number", remedy};
-}
 
 std::string on_standard_input() {
   return {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
@@ -239,20 +214,7 @@ Json plan_json(const PlanBatchReport& report) {
 
 Result<int> plan(const PlanArguments& a, const CommonArguments& common) {
   PlanBatchOptions options = a.options;
-  if (!a.within.empty()) {
-    const std::optional<double> seconds =
-        with_unit(a.within, {{'s', 1}, {'m', 60}, {'h', 3600}, {'d', 86400}});
-    if (!seconds) return no_amount("--within", a.within, "write 8h, 30m, 90s or 2d");
-    options.within_seconds = *seconds;
-  }
-  for (const std::string& each : options.product.then) {
-    if (each != "maps" && !(each.starts_with("export:") && each.size() > 7))
-      return Error{ErrorKind::kUsage, "nothing can be made of a solve so", "--then " + each, "",
-                   "name maps, or export:PRESET"};
-  }
-  options.sample = static_cast<std::size_t>(a.sample);
-  options.task_seconds = 60 * a.task_minutes;
-  options.calibrations.assign(a.calibrations.begin(), a.calibrations.end());
+  if (Result<void> fits = check_fields(options); !fits) return std::move(fits).error();
   if (Result<void> ok = add_sessions(a, common, options); !ok) return std::move(ok).error();
   const Result<PlanBatchReport> report = [&] {
     ProgressLine line(common.quiet);
@@ -330,15 +292,9 @@ void print_run(const RunBatchReport& report, const std::optional<MergeReport>& m
   if (merged) print("look at " + (merged->folder / "report.html").string());
 }
 
-Result<int> run(const RunArguments& a, const CommonArguments& common) {
-  RunBatchOptions options = a.options;
-  if (!a.memory.empty()) {
-    const std::optional<double> bytes = with_unit(a.memory, {{'M', 1 << 20}, {'G', 1 << 30}});
-    if (!bytes) return no_amount("--memory", a.memory, "write 1500M or 2G");
-    options.memory_bytes = static_cast<std::uint64_t>(*bytes);
-  }
-  if (a.array_from) {
-    const Result<int> task = task_of_array(*a.array_from);
+Result<int> run(RunBatchOptions options, const CommonArguments& common) {
+  if (options.array_from) {
+    const Result<int> task = task_of_array(*options.array_from);
     if (!task) return task.error();
     options.task = *task;
   }
@@ -353,14 +309,14 @@ Result<int> run(const RunArguments& a, const CommonArguments& common) {
   const Result<RunBatchReport> report = run_batch(options, context, after);
   if (!report) return report.error();
   std::optional<MergeReport> merged;
-  if (a.merge && !report->was_stopped) {
+  if (options.merges && !report->was_stopped) {
     Result<MergeReport> made = merge_batch(options.plan, context);
     if (!made) return std::move(made).error();
     merged = std::move(*made);
   }
   print_run(*report, merged, common);
   if (merged) return merged->state.summary.is_whole() ? kDone : kDoneWithWarnings;
-  return a.array_from ? after_own_task(code_of(*report)) : code_of(*report);
+  return options.array_from ? after_own_task(code_of(*report)) : code_of(*report);
 }
 
 void add_choice_of_sessions(Options& options, PlanArguments& a) {
@@ -377,88 +333,16 @@ void add_choice_of_sessions(Options& options, PlanArguments& a) {
   add_place(options, a.place);
 }
 
-void add_product(Options& options, std::vector<std::string>& keep, bool& half) {
-  options
-      .add("--keep", &keep,
-           "Maps of a solve that stay, by commas; default all: normal, albedo, sigma, residual, status")
-      .by_commas()
-      .one_of({kMapNames.begin(), kMapNames.end()});
-  options.add_flag("--half", &half, "Normals as half floats, true to 0.03 degrees");
-}
-
 Run add_plan(Options& options) {
   const auto a = std::make_shared<PlanArguments>();
-  PlanBatchOptions& plan_options = a->options;
-  plan_options.plan = "batch.jsonl";
   add_choice_of_sessions(options, *a);
-  const Option quality = options.add("--quality", &plan_options.quality, "Level of all of them")
-                             .one_of(level_names())
-                             .shows_default();
-  const Option to = options
-                        .add("--to", &plan_options.to_deg,
-                             "Of each the cheapest level expected to be so many degrees off at most")
-                        .above_zero()
-                        .excludes(quality);
-  options
-      .add("--within", &a->within,
-           "Node-hours for all of them, spent where a second buys most degrees: 8h, 30m, 90s, 2d")
-      .excludes(quality)
-      .excludes(to);
-  options
-      .add("--least-change", &plan_options.least_change_deg,
-           "Leave out sessions whose maps would turn by less than so many degrees, as measured on the sample")
-      .above_zero();
-  options
-      .add("--calibration", &a->calibrations,
-           "Calibration folder in place of the own ones of the sessions of its rig; may be given again")
-      .one_at_a_time();
-  options.add("--then", &plan_options.product.then, "Made of each solve, by commas: maps, export:PRESET")
-      .by_commas();
-  add_product(options, plan_options.product.keep, plan_options.product.half);
-  options.add("--compress", &plan_options.product.compression, "Of EXR files: none, zip, piz")
-      .one_of({kCompressionNames.begin(), kCompressionNames.end()});
-  options.add("--sample", &a->sample, "Sessions whose levels are measured")
-      .in_range(0, 100000)
-      .shows_default();
-  options.add("--task-minutes", &a->task_minutes, "Of a task").in_range(0.001, 10000.0).shows_default();
-  options.add("--output", &plan_options.output, "Folder for solves, where the archive cannot be written");
-  options.add("-o,--plan", &plan_options.plan, "File of the plan").shows_default();
+  add_options(options, a->options);
   return [a](const CommonArguments& common) { return plan(*a, common); };
 }
 
 Run add_run(Options& options) {
-  const auto a = std::make_shared<RunArguments>();
-  RunBatchOptions& run_options = a->options;
-  options.add("plan", &run_options.plan, "Plan of weft batch plan").required();
-  const Option task =
-      options.add("--task", &run_options.task, "One task of it, from 0; default all").not_negative();
-  options.add("--jobs", &run_options.jobs, "Sessions at a time, which share the threads")
-      .in_range(1, 1024)
-      .shows_default()
-      .excludes(task);
-  options
-      .add("--array-from", &a->array_from,
-           "In an array of Slurm: the task that is so much more than its index. It is queued again where it "
-           "ends "
-           "with 75, up to three times")
-      .not_negative()
-      .excludes(task);
-  options
-      .add_flag(
-          "--merge", &a->merge,
-          "Write the report afterwards, as weft batch merge does, and end with its exit code: 2 where a "
-          "session failed or is missing. Not where it was stopped")
-      .excludes(task);
-  options.add_flag("--retry-failed", &run_options.retry_failed, "Try sessions again that failed before");
-  add_product(options, run_options.keep, run_options.half);
-  options.add("--fetch", &run_options.fetch,
-              "Command that brings a session here before it is solved: 'rclone copy {src} {dst}'");
-  options.add(
-      "--store", &run_options.store,
-      "Command that takes a solve away: all but solve.json, then solve.json alone as {dst}/solve.json");
-  options.add("--scratch", &run_options.scratch,
-              "Folder for fetched sessions; default the system's temporary one");
-  options.add("--memory", &a->memory, "That a session may hold, else it is lost alone: 1500M, 2G");
+  const auto a = std::make_shared<RunBatchOptions>();
+  add_options(options, *a);
   return [a](const CommonArguments& common) { return run(*a, common); };
 }
 

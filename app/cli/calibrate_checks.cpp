@@ -37,9 +37,7 @@ Result<CalibrateOutcome> check(const CalibrateCheckOptions& sheets, const JobCon
     rig.paper_delta = sheets.paper_delta;
     return calibrate_check_rig(rig, context);
   }
-  if (!sheets.input.empty()) return calibrate_check(sheets, context);
-  return Error{ErrorKind::kUsage, "nothing to check", "weft calibrate check", "neither input nor --session",
-               "name a session of a sheet, a folder of them, or a scan by --session"};
+  return calibrate_check(sheets, context);
 }
 
 Run add_check(Options& options) {

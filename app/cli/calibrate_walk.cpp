@@ -3,9 +3,12 @@
 // made necessary. Where a walk stands is what lies beside the rig file: sets/NAME-..., calibrations/NAME-....
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +26,7 @@
 #include "app/jobs/calibrate/lights.h"
 #include "app/jobs/calibrate/response.h"
 #include "app/jobs/calibrate/update.h"
+#include "app/jobs/calibrate/walk.h"
 #include "app/jobs/last_check.h"
 #include "app/jobs/sets/photograph_set.h"
 #include "capture/rig.h"
@@ -45,12 +49,10 @@ struct WalkArguments {
 using Job = Result<CalibrateOutcome> (*)(const fs::path& set, const fs::path& from, const fs::path& output,
                                          const JobContext& context);
 
-/// Photographs, and what is made of them.
-struct Stage {
-  std::string_view part;
-  std::string_view result;  ///< what its folder ends with; empty: photographs for the stage after it
-  fs::path description;
-  Job job;  ///< of the set in a folder, by a calibration, into another folder
+/// One of the walk, as it is told.
+struct Stage : WalkStage {
+  fs::path description;  ///< of its board, sheet or chart; empty: not told
+  Job job_of_set;        ///< of the set in a folder, by a calibration, into another folder
 };
 
 /// A job whose options name a set, a calibration and an output.
@@ -84,22 +86,33 @@ Result<CalibrateOutcome> response(const fs::path& set, const fs::path& from, con
   return calibrate_response(options, context);
 }
 
-constexpr std::string_view kCheck = "check", kMoved = "moved";
+Job job_of(const WalkStage& stage) {
+  if (stage.part == kWalkMoved) return stage.job == "check" ? moved : update;
+  constexpr std::array<std::pair<std::string_view, Job>, 5> kJobs = {{{"calibrate_camera", camera},
+                                                                      {"calibrate_response", response},
+                                                                      {"calibrate_lights", lights},
+                                                                      {"calibrate_color", color},
+                                                                      {"check", proof}}};
+  return std::ranges::find(kJobs, stage.job, &std::pair<std::string_view, Job>::first)->second;
+}
 
-std::vector<Stage> stages_of_all(const WalkArguments& a) {
-  std::vector<Stage> stages = {{"board", "camera", a.board, camera}};
-  if (a.trap) stages.push_back({"trap", "", "", nullptr});
-  stages.push_back({"response", "response", "", response});
-  stages.push_back({"sheet", "lights", a.sheet, lights});
-  if (!a.chart.empty()) stages.push_back({"chart", "color", a.chart, color});
-  stages.push_back({"check", kCheck, a.sheet, proof});
+/// Optional ones are those that were asked for.
+std::vector<Stage> stages_of(std::span<const WalkStage> walk, const WalkArguments& a) {
+  std::vector<Stage> stages;
+  for (const WalkStage& each : walk) {
+    const fs::path& description = each.thing == "board" ? a.board : each.thing == "chart" ? a.chart : a.sheet;
+    const bool is_asked = each.is_aside ? a.trap : !description.empty();
+    if (!each.is_optional || is_asked) stages.push_back({each, description, job_of(each)});
+  }
   return stages;
 }
 
+std::vector<Stage> stages_of_all(const WalkArguments& a) {
+  return stages_of(walk_of_all(), a);
+}
+
 std::vector<Stage> stages_of_refresh(const WalkArguments& a) {
-  return {{"moved", kMoved, a.sheet, moved},
-          {"moved", "updated", a.sheet, update},
-          {"check", kCheck, a.sheet, proof}};
+  return stages_of(walk_of_refresh(), a);
 }
 
 bool has_passed(const fs::path& result) {
@@ -124,7 +137,7 @@ class Walk {
     if (Result<void> ok = check_described(stages); !ok) return std::move(ok).error();
     fs::path calibration = rig_.scan.calibration;
     for (const Stage& stage : stages) {
-      if (stage.result.empty()) {
+      if (stage.is_aside) {
         const Result<bool> is_complete = photograph(stage, calibration);
         if (!is_complete) return is_complete.error();
         if (!*is_complete) return kDone;
@@ -136,9 +149,9 @@ class Walk {
         if (!done) return done.error();
         if (!*done) return kDone;  // a person stopped here
       }
-      if (stage.result == kCheck && !has_passed(result)) return failed(result);
-      if (stage.result == kMoved && has_passed(result)) return kDone;
-      if (stage.result != kMoved && stage.result != kCheck) calibration = result;
+      if (stage.result == kWalkCheck && !has_passed(result)) return failed(result);
+      if (stage.result == kWalkMoved && has_passed(result)) return kDone;
+      if (stage.result != kWalkMoved && stage.result != kWalkCheck) calibration = result;
     }
     return accept(calibration);
   }
@@ -156,7 +169,7 @@ class Walk {
     return folder_ / "sets" / fmt::format("{}-{}", name_, stage.part);
   }
   bool has_ended(const std::string& name) const {
-    return is_there(result_of(name, kCheck)) || has_passed(result_of(name, kMoved));
+    return is_there(result_of(name, kWalkCheck)) || has_passed(result_of(name, kWalkMoved));
   }
 
   /// The photographs that a stage lacks, and its result; nothing where more are to be taken later.
@@ -167,7 +180,8 @@ class Walk {
     if (!*is_complete) return std::optional<CalibrateOutcome>();
     if (Result<void> ok = make_writable_folder(output.parent_path()); !ok) return ok.error();
     Result<CalibrateOutcome> outcome = run_and_print(
-        [&](const JobContext& context) { return stage.job(set_of(stage), from, output, context); }, common_);
+        [&](const JobContext& context) { return stage.job_of_set(set_of(stage), from, output, context); },
+        common_);
     if (!outcome) return std::move(outcome).error();
     return std::optional(std::move(*outcome));
   }
@@ -176,20 +190,19 @@ class Walk {
   Result<void> check_described(const std::vector<Stage>& stages) const {
     for (const Stage& stage : stages) {
       const std::string part(stage.part);
-      const bool needs_none = part == "trap" || part == "response" || part == "chart";
+      const bool needs_none = stage.thing.empty() || stage.thing == "chart";
       if (needs_none || is_there(set_of(stage)) || !stage.description.empty()) continue;
       if (!newest_description(folder_ / "sets", *set_part_of(part)).empty()) continue;
-      const char* thing = part == "board" ? "board" : "sheet";
-      return Error{ErrorKind::kUsage, fmt::format("nobody said what the {} is", thing),
-                   fmt::format("--{}", thing), "its size and pattern must be known to find it",
-                   fmt::format("write a {}.toml (docs/calibration.md) and name it", thing)};
+      return Error{ErrorKind::kUsage, fmt::format("nobody said what the {} is", stage.thing),
+                   fmt::format("--{}", stage.thing), "its size and pattern must be known to find it",
+                   fmt::format("write a {}.toml (docs/calibration.md) and name it", stage.thing)};
     }
     return {};
   }
 
   /// Whether all photographs of a set are there.
   Result<bool> photograph(const Stage& stage, const fs::path& from) {
-    if (!common_.json) print(fmt::format("-- {} --", stage.result.empty() ? stage.part : stage.result));
+    if (!common_.json) print(fmt::format("-- {} --", stage.is_aside ? stage.part : stage.result));
     if (!devices_) {
       auto opened = OpenedDevices::open(rig_);
       if (!opened) return opened.error();

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <new>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
+#include "core/fields.h"
 #include "core/process.h"
 
 namespace weft::app {
@@ -35,6 +37,26 @@ void tell_usage_error(const std::string& why) {
   tell_end(kUsageError);
 }
 
+// The verb that the words before an error said, else the program.
+const CLI::App& verb_said(const CLI::App& cli) {
+  const std::vector<CLI::App*> said = cli.get_subcommands();
+  return said.empty() ? cli : verb_said(*said.front());
+}
+
+std::string words_of_unknown(const CLI::App& cli, const std::string& unknown) {
+  const CLI::App& verb = verb_said(cli);
+  std::vector<std::string> known;
+  if (unknown.starts_with('-')) {
+    for (const CLI::Option* option : verb.get_options())
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  } else {
+    for (const CLI::App* each : verb.get_subcommands(std::function<bool(const CLI::App*)>()))
+      known.push_back(each->get_name());
+  }
+  const std::string words = unknown + " was not expected";
+  return known.empty() ? words : words + "; did you mean '" + nearest_word(known, unknown) + "'";
+}
+
 // The exit code where there is nothing to run: --help, or a usage error.
 std::optional<int> read(CLI::App& cli, int argc, char** argv) {
   try {
@@ -47,9 +69,9 @@ std::optional<int> read(CLI::App& cli, int argc, char** argv) {
     const std::vector<std::string> unknown = cli.remaining(/*recurse=*/true);
     // What is not known says more than what is then missing.
     if (!asked_for_help && asked_for_events) {
-      tell_usage_error(unknown.empty() ? error.what() : unknown.front() + " was not expected");
+      tell_usage_error(unknown.empty() ? error.what() : words_of_unknown(cli, unknown.front()));
     } else if (!asked_for_help && !unknown.empty()) {
-      note("weft: " + unknown.front() + " was not expected. See weft --help.");
+      note("weft: " + words_of_unknown(cli, unknown.front()) + ". See weft --help.");
     } else {
       cli.exit(error);
     }

@@ -2,21 +2,17 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
-#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/jobs/copy_request.h"
 #include "capture/scan/second_copy.h"
 
 namespace weft::app {
 namespace {
 
-struct CopyArguments {
-  std::filesystem::path session;
-  std::filesystem::path to;  ///< folder; empty: where the session says that its copy belongs
-};
-
-Result<int> copy(const CopyArguments& arguments, const CommonArguments& common) {
+Result<int> copy(const CopyRequest& arguments, const CommonArguments& common) {
   const Result<std::filesystem::path> copy = capture::copy_later(arguments.session, arguments.to);
   if (!copy) return copy.error();
   const auto one_disk = capture::warning_of_one_disk(arguments.session, *copy);
@@ -30,9 +26,8 @@ Result<int> copy(const CopyArguments& arguments, const CommonArguments& common) 
 }
 
 Run add_copy(Options& options) {
-  const auto a = std::make_shared<CopyArguments>();
-  options.add("session", &a->session, "Session folder, NAME.weft").required();
-  options.add("--to", &a->to, "Folder on another disk; default the one it was scanned with");
+  const auto a = std::make_shared<CopyRequest>();
+  add_options(options, *a);
   return [a](const CommonArguments& common) { return copy(*a, common); };
 }
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/described_options.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
 #include <type_traits>
+
+#include "core/number.h"
 
 namespace weft::app {
 namespace {
-
-template <typename T>
-constexpr bool kIsList = false;
-template <typename T>
-constexpr bool kIsList<std::vector<T>> = true;
 
 // A word without a dash is called as its field is.
 std::string names_of(const Field& field) {
@@ -17,19 +18,48 @@ std::string names_of(const Field& field) {
   return option.empty() ? field.name : option;
 }
 
-void keep_to(const NumberRange& range, bool is_whole, const Option& option) {
-  if (range.least == kAboveZero.least) {
-    option.above_zero();
-  } else if (range.least > -kMostNumber && is_whole) {
-    option.in_range(static_cast<int>(range.least), static_cast<int>(range.most));
-  } else if (range.least > -kMostNumber) {
-    option.in_range(range);
+template <typename T>
+void keep_to(const NumberRange& range, const Option& option) {
+  if constexpr (std::is_same_v<T, int>) {
+    if (range.most < kMostNumber)
+      return static_cast<void>(option.in_range(static_cast<int>(range.least), static_cast<int>(range.most)));
+  }
+  if constexpr (std::is_same_v<T, int> || std::is_same_v<T, double>) {
+    if (range.least == kAboveZero.least) {
+      option.above_zero(std::is_same_v<T, int>);
+    } else if (range.least == 0 && range.most == kMostNumber) {
+      option.not_negative(std::is_same_v<T, int>);
+    } else if (range.least > -kMostNumber) {
+      option.in_range(range);
+    }
   }
 }
 
-template <typename T>
-constexpr bool kIsWhole =
-    std::is_same_v<T, int> || std::is_same_v<T, std::optional<int>> || std::is_same_v<T, std::vector<int>>;
+// Words without a dash stand side by side, and what stands between commas may hold none.
+void list_as(const Field& field, bool is_of_numbers, const Option& option) {
+  if (!names_of(field).starts_with('-')) return;
+  if (field.is_said_again) option.one_at_a_time();
+  if (is_of_numbers || !field.is_said_again) option.by_commas();
+}
+
+// "8h" in seconds; why it is none.
+std::string read_amount(const Field& field, const std::string& text, double& amount) {
+  std::string names;
+  for (const NumberUnit& unit : field.units) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", *unit.name == '\0' ? "nothing" : unit.name);
+    if (!text.ends_with(unit.name)) continue;
+    const std::optional<double> number =
+        as_number(std::string_view(text).substr(0, text.size() - std::string_view(unit.name).size()));
+    if (!number) continue;
+    amount = *number * unit.size;
+    return field.range.holds(amount)
+               ? ""
+               : fmt::format("{}{}, and is {}", rule_of(field.range),
+                             field.units.front().size == 1 ? std::string(" ") + field.units.front().name : "",
+                             text);
+  }
+  return fmt::format("must be a number with {} behind it, and is \"{}\"", names, text);
+}
 
 }  // namespace
 
@@ -41,18 +71,52 @@ void OptionFields::need(const char* field, const char* other) {
   options_by_field_.at(field).needs(options_by_field_.at(other));
 }
 
+void OptionFields::need_one(const std::vector<const char*>& fields) {
+  std::vector<Option> options;
+  for (const char* field : fields) options.push_back(options_by_field_.at(field));
+  options_.need_one(options);
+}
+
+Option OptionFields::add_amount(const Field& field, std::optional<double>& amount) {
+  return options_.add_text(
+      names_of(field),
+      [field, &amount](const std::string& text) {
+        double read = 0;
+        std::string why = read_amount(field, text, read);
+        if (why.empty()) amount = read;
+        return why;
+      },
+      field.says);
+}
+
+Option OptionFields::add_document(const Field& field, Json& document) {
+  return options_.add_text(
+      names_of(field),
+      [&document](const std::string& text) {
+        Json read = Json::parse(text, nullptr, false);
+        if (read.is_discarded()) return std::string("must be JSON");
+        document = std::move(read);
+        return std::string();
+      },
+      field.says);
+}
+
 void OptionFields::take(const Field& field, Value value) {
   const Option added = std::visit(
       [&]<typename T>(T* each) {
         if constexpr (std::is_same_v<T, bool>) {
           return options_.add_flag(names_of(field), each, field.says);
+        } else if constexpr (std::is_same_v<T, Json>) {
+          return add_document(field, *each);
         } else {
+          if constexpr (std::is_same_v<T, std::optional<double>>)
+            if (!field.units.empty()) return add_amount(field, *each);
           const Option option = options_.add(names_of(field), each, field.says);
           if (field.need == Need::kMustSay) option.required();
-          if constexpr (kIsList<T>) option.by_commas();
+          if constexpr (kIsList<T>) list_as(field, std::is_arithmetic_v<typename Inner<T>::Type>, option);
           if (field.most > 0) option.takes(field.fewest, field.most);
-          if (!field.words.empty()) option.one_of(field.words);
-          keep_to(field.range, kIsWhole<T>, option);
+          if (!field.words.empty() && field.path != PathTo::kNamed) option.one_of(field.words);
+          keep_to<typename Inner<T>::Type>(field.range, option);
           if constexpr (std::is_arithmetic_v<T>) {
             option.shows_default();
           } else if constexpr (std::is_same_v<T, std::string> || std::is_same_v<T, std::filesystem::path>) {

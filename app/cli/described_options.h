@@ -2,7 +2,9 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "app/cli/options.h"
 #include "core/fields.h"
@@ -16,8 +18,11 @@ class OptionFields final : public Fields {
 
   void exclude(const char* field, const char* other) override;
   void need(const char* field, const char* other) override;
+  void need_one(const std::vector<const char*>& fields) override;
 
  private:
+  Option add_amount(const Field& field, std::optional<double>& amount);
+  Option add_document(const Field& field, Json& document);
   void take(const Field& field, Value value) override;
   void choose(const Field& field, Words words, std::size_t now,
               const std::function<void(std::size_t)>& choose) override;

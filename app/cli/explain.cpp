@@ -13,7 +13,7 @@
 namespace weft::app {
 namespace {
 
-Result<Ladder> price(const SolveArguments& a, const CommonArguments& common) {
+Result<Ladder> price(const SolveRequest& a, const CommonArguments& common) {
   ProgressLine line(common.quiet);
   const JobContext context = {common.threads, stop_on_signal(), line.callback()};
   const PriceOptions wanted = {.crops = a.crops};
@@ -46,7 +46,7 @@ void print_words(const Ladder& ladder, std::optional<std::size_t> chosen) {
 
 }  // namespace
 
-Result<int> run_explain(const SolveArguments& arguments, const CommonArguments& common) {
+Result<int> run_explain(const SolveRequest& arguments, const CommonArguments& common) {
   const Result<Ladder> ladder = price(arguments, common);
   if (!ladder) return ladder.error();
   std::optional<std::size_t> chosen;
@@ -63,7 +63,7 @@ Result<int> run_explain(const SolveArguments& arguments, const CommonArguments& 
   return kDone;
 }
 
-Result<LevelPrice> chosen_level(const SolveArguments& arguments, const CommonArguments& common) {
+Result<LevelPrice> chosen_level(const SolveRequest& arguments, const CommonArguments& common) {
   const Result<Ladder> ladder = price(arguments, common);
   if (!ladder) return ladder.error();
   const Result<std::size_t> chosen = choose_level(*ladder, arguments.wish);
@@ -76,7 +76,7 @@ Result<LevelPrice> chosen_level(const SolveArguments& arguments, const CommonArg
   return level;
 }
 
-Result<int> run_ladder(const SolveArguments& arguments, const CommonArguments& common) {
+Result<int> run_ladder(const SolveRequest& arguments, const CommonArguments& common) {
   const Result<std::vector<LadderStep>> steps = [&] {
     ProgressLine line(common.quiet);
     const JobContext context = {common.threads, stop_on_signal(), line.callback()};

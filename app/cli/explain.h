@@ -3,19 +3,19 @@
 
 #include <string>
 
-#include "app/cli/solve.h"
 #include "app/cli/verb.h"
+#include "app/jobs/solve_request.h"
 #include "core/result.h"
 
 namespace weft::app {
 
 /// Prints what each level would give and cost, and which one the wishes choose.
-Result<int> run_explain(const SolveArguments& arguments, const CommonArguments& common);
+Result<int> run_explain(const SolveRequest& arguments, const CommonArguments& common);
 
 /// The level that the wishes choose, with a note of what is expected of it.
-Result<LevelPrice> chosen_level(const SolveArguments& arguments, const CommonArguments& common);
+Result<LevelPrice> chosen_level(const SolveRequest& arguments, const CommonArguments& common);
 
 /// Solves a session by every level and draws them side by side.
-Result<int> run_ladder(const SolveArguments& arguments, const CommonArguments& common);
+Result<int> run_ladder(const SolveRequest& arguments, const CommonArguments& common);
 
 }  // namespace weft::app

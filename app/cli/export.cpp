@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/export.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,25 +10,17 @@
 #include <utility>
 #include <vector>
 
+#include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
-#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/export/export_json.h"
+#include "app/jobs/export/export_request.h"
 #include "app/jobs/export/preset_files.h"
 #include "app/jobs/export/price.h"
-#include "core/number.h"
 
 namespace weft::app {
 namespace {
-
-struct ExportArguments {
-  ExportOptions options;
-  std::string shown;
-  std::string to;
-  bool lists = false;
-  bool only_explains = false;
-};
 
 Result<int> list_presets(const CommonArguments& common) {
   Json rows = Json::array();
@@ -102,7 +92,7 @@ void print_report(const ExportReport& report) {
   for (const Json& text : d["notes"]) print("  " + text.get<std::string>());
 }
 
-Result<int> run_export(const ExportArguments& a, const CommonArguments& common) {
+Result<int> run_export(const ExportRequest& a, const CommonArguments& common) {
   const Result<std::vector<ExportReport>> reports = [&] {
     ProgressLine line(common.quiet);
     return export_maps(a.options, {common.threads, stop_on_signal(), line.callback()});
@@ -133,7 +123,7 @@ void print_prices(const std::vector<ExportPrice>& prices) {
   print("bytes and seconds of the whole cloth, by one thread, from a piece of its middle");
 }
 
-Result<int> explain_export(const ExportArguments& a, const CommonArguments& common) {
+Result<int> explain_export(const ExportRequest& a, const CommonArguments& common) {
   const Result<std::vector<ExportPrice>> prices =
       price_exports(a.options, {common.threads, stop_on_signal(), [](std::string_view, double) {}});
   if (!prices) return prices.error();
@@ -149,46 +139,10 @@ Error missing(const char* option, const char* remedy) {
   return {ErrorKind::kUsage, "nothing can be exported", option, "it is missing", remedy};
 }
 
-Result<void> read_aim(ExportArguments& a) {
-  if (a.to.empty()) return {};
-  constexpr std::string_view kUnit = "deg";
-  std::string_view number = a.to;
-  if (number.ends_with(kUnit)) number.remove_suffix(kUnit.size());
-  const std::optional<double> deg = as_number(number);
-  if (deg && *deg > 0 && *deg <= 90) {
-    a.options.to_deg = *deg;
-    return {};
-  }
-  return Error{ErrorKind::kUsage, "nothing can be exported", "--to",
-               "\"" + a.to + "\" is no angle of 0 to 90 degrees", "write 0.1 or 0.1deg"};
-}
-
 Run add_export(Options& options) {
-  const auto a = std::make_shared<ExportArguments>();
-  ExportOptions& e = a->options;
-  options.add("input", &e.input,
-              "Session folder; folder of a set of maps, a built material or a solve; material: FILE.toml, "
-              "library:NAME");
-  options
-      .add("--preset", &e.presets,
-           "Which files: names of --list, or files that end in .toml (docs/exports.md), by commas")
-      .by_commas();
-  options.add("-o,--output", &e.output,
-              "Folder; of several presets it gets one for each. Default SESSION/export/PRESET");
-  options.add("--maps", &e.maps, "Id of the set of maps; default the newest of the session's current solve");
-  options.add_flag("--draft", &e.is_draft, "Maps of a preview will do, of half the size and without masks");
-  options.add("--name", &e.name, "Of the cloth, in file names; default as it is called");
-  options.add("--size", &e.size_px, "Pixels of the longer side; default as many as there are")
-      .in_range(1, 1 << 20);
-  options.add_flag("--dx10", &e.is_dx10, "DDS files with headers of DX10 alone, which say sRGB");
-  options.add_flag("--list", &a->lists, "Only list the presets");
-  options.add("--show", &a->shown, "Only print a preset as TOML, to begin one of your own with");
-  options.add_flag("--explain", &a->only_explains,
-                   "Only say what each file and each format costs and loses on this cloth");
-  options.add("--to", &a->to,
-              "Degrees that normals may lose in the mean, as 0.1 or 0.1deg: chooses their bits");
+  const auto a = std::make_shared<ExportRequest>();
+  add_options(options, *a);
   return [a](const CommonArguments& common) -> Result<int> {
-    if (Result<void> ok = read_aim(*a); !ok) return std::move(ok).error();
     if (a->lists) return list_presets(common);
     if (!a->shown.empty()) return show_preset(a->shown);
     if (a->options.input.empty()) return missing("input", "name a session or a folder of maps");

@@ -7,12 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
-#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/maps/session_sets.h"
 #include "app/jobs/material/build.h"
+#include "app/jobs/material/build_request.h"
 #include "app/jobs/material/map_set.h"
 #include "app/jobs/material/new_material.h"
 #include "app/jobs/material/watch.h"
@@ -23,11 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct MaterialArguments {
-  std::vector<std::string> files;
-  fs::path output;
-  bool no_pictures = false;
-  Compression compression = Compression::kNone;
+struct MaterialArguments : BuildRequest {
   NewMaterial made;
 };
 
@@ -111,7 +108,7 @@ void print_build(const BuildReport& report) {
 Result<BuildOptions> build_options(const MaterialArguments& a) {
   Result<std::vector<MaterialPlace>> places = places_of(a);
   if (!places) return std::move(places).error();
-  return BuildOptions{std::move(*places), a.output, {a.compression, !a.no_pictures}};
+  return BuildOptions{std::move(*places), a.output, a.compose};
 }
 
 Result<int> build(const MaterialArguments& a, const CommonArguments& common) {
@@ -212,14 +209,6 @@ void add_files(Options& options, MaterialArguments& a) {
   options.add("material", &a.files, "TOML files, or library:NAME").required();
 }
 
-void add_build_options(Options& options, MaterialArguments& a) {
-  add_files(options, a);
-  options.add("-o,--output", &a.output,
-              "Folder that all built materials go into, by their ids; default build/ beside each file");
-  options.add_choice("--compress", &a.compression, kCompressionNames, "Of EXR files: none, zip, piz");
-  options.add_flag("--no-pictures", &a.no_pictures, "No preview.png");
-}
-
 Run add_new(Options& options) {
   const auto a = std::make_shared<MaterialArguments>();
   options.add("file", &a->made.file, "The file to be written, NAME.toml").required();
@@ -241,13 +230,13 @@ Run add_resolve(Options& options) {
 
 Run add_build(Options& options) {
   const auto a = std::make_shared<MaterialArguments>();
-  add_build_options(options, *a);
+  add_options(options, static_cast<BuildRequest&>(*a));
   return [a](const CommonArguments& common) { return build(*a, common); };
 }
 
 Run add_watch(Options& options) {
   const auto a = std::make_shared<MaterialArguments>();
-  add_build_options(options, *a);
+  add_options(options, static_cast<BuildRequest&>(*a));
   return [a](const CommonArguments& common) { return watch(*a, common); };
 }
 

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/options.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <optional>
 #include <type_traits>
 
+#include "core/fields.h"
 #include "core/files.h"
 #include "core/number.h"
 
@@ -12,19 +16,6 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <typename T>
-struct NumberIn {
-  using Type = T;
-};
-template <typename T>
-struct NumberIn<std::optional<T>> {
-  using Type = T;
-};
-template <typename T>
-struct NumberIn<std::vector<T>> {
-  using Type = T;
-};
 
 // CLI11 by itself takes "nan", "0x10" and what overflows.
 std::string why_no_real(const std::string& text) {
@@ -42,6 +33,16 @@ void check_number(CLI::Option& option) {
   } else if constexpr (std::is_integral_v<T>) {
     option.check(why_not_whole<T>);
   }
+}
+
+// A rule whose words in the help are those of CLI11, and whose refusal is that of every other face.
+Option hold(CLI::Option* option, CLI::Validator rule, const NumberRange& range, bool is_whole) {
+  rule.operation([range, is_whole](const std::string& text) {
+    const std::optional<double> number = as_number(text);
+    if (number && range.holds(*number)) return std::string();
+    return fmt::format("{}, and is {}", rule_of(range, is_whole), text);
+  });
+  return Option(option->check(rule));
 }
 
 // What it is called is its last part: "satin.weft/" and "." name a folder by no name.
@@ -73,32 +74,33 @@ Option Option::needs(const Option& other) const {
 }
 
 Option Option::one_of(const std::vector<std::string>& words) const {
-  option_->check(CLI::IsMember(words));
+  CLI::Validator rule = CLI::IsMember(words);
+  rule.operation([words](const std::string& text) {
+    return std::ranges::find(words, text) != words.end() ? std::string() : rule_of_words(words, text);
+  });
+  option_->check(rule);
   return *this;
 }
 
 Option Option::in_range(int least, int most) const {
-  option_->check(CLI::Range(least, most));
-  return *this;
+  return hold(option_, CLI::Range(least, most), {static_cast<double>(least), static_cast<double>(most)},
+              true);
 }
 
 Option Option::in_range(double least, double most) const {
-  option_->check(CLI::Range(least, most));
-  return *this;
+  return hold(option_, CLI::Range(least, most), {least, most}, false);
 }
 
 Option Option::in_range(const NumberRange& range) const {
   return in_range(range.least, range.most);
 }
 
-Option Option::above_zero() const {
-  option_->check(CLI::PositiveNumber);
-  return *this;
+Option Option::above_zero(bool is_whole) const {
+  return hold(option_, CLI::PositiveNumber, kAboveZero, is_whole);
 }
 
-Option Option::not_negative() const {
-  option_->check(CLI::NonNegativeNumber);
-  return *this;
+Option Option::not_negative(bool is_whole) const {
+  return hold(option_, CLI::NonNegativeNumber, kNotNegative, is_whole);
 }
 
 Option Option::by_commas() const {
@@ -125,10 +127,14 @@ bool Option::is_given() const {
   return option_->count() > 0;
 }
 
+std::string Option::name() const {
+  return option_->get_name();
+}
+
 Option Options::add(const std::string& names, Value value, const std::string& help) {
   return std::visit(
       [&](auto* each) {
-        using Held = typename NumberIn<std::remove_pointer_t<decltype(each)>>::Type;
+        using Held = typename Inner<std::remove_pointer_t<decltype(each)>>::Type;
         CLI::Option* option = verb_.add_option(names, *each, help);
         if constexpr (std::is_same_v<Held, fs::path>) option->type_name("PATH")->transform(with_a_name);
         check_number<Held>(*option);
@@ -137,8 +143,28 @@ Option Options::add(const std::string& names, Value value, const std::string& he
       value);
 }
 
+Option Options::add_text(const std::string& names, const std::function<std::string(const std::string&)>& read,
+                         const std::string& help) {
+  return Option(verb_
+                    .add_option_function<std::string>(
+                        names, [read](const std::string& text) { read(text); }, help)
+                    ->check([read](const std::string& text) { return read(text); }));
+}
+
+void Options::need_one(const std::vector<Option>& options) {
+  verb_.parse_complete_callback([options] {
+    if (std::ranges::any_of(options, &Option::is_given)) return;
+    std::string names;
+    for (const Option& each : options)
+      names += (names.empty() ? "" : each.name() == options.back().name() ? " or " : ", ") + each.name();
+    throw CLI::RequiredError(names);
+  });
+}
+
 Option Options::add_flag(const std::string& names, bool* value, const std::string& help) {
-  return Option(verb_.add_flag(names, *value, help));
+  if (!names.starts_with('!')) return Option(verb_.add_flag(names, *value, help));
+  return Option(verb_.add_flag_callback(
+      names.substr(1), [value] { *value = false; }, help));
 }
 
 Option Options::add_word(const std::string& names, const std::vector<std::string>& words,
@@ -147,9 +173,8 @@ Option Options::add_word(const std::string& names, const std::vector<std::string
   const auto take = [words, choose](const std::string& word) {
     choose(static_cast<std::size_t>(std::ranges::find(words, word) - words.begin()));
   };
-  return Option(verb_.add_option_function<std::string>(names, take, help)
-                    ->check(CLI::IsMember(words))
-                    ->default_str(words[otherwise]));
+  return Option(verb_.add_option_function<std::string>(names, take, help)->default_str(words[otherwise]))
+      .one_of(words);
 }
 
 }  // namespace weft::app

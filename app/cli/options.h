@@ -34,8 +34,8 @@ class Option {
   Option in_range(int least, int most) const;
   Option in_range(double least, double most) const;
   Option in_range(const NumberRange& range) const;
-  Option above_zero() const;
-  Option not_negative() const;
+  Option above_zero(bool is_whole = false) const;
+  Option not_negative(bool is_whole = false) const;
 
   /// A list is written 1,4,7.
   Option by_commas() const;
@@ -48,6 +48,7 @@ class Option {
 
   /// Whether it was given; once the command line is read.
   bool is_given() const;
+  std::string name() const;
 
  private:
   CLI::Option* option_;
@@ -58,10 +59,10 @@ class Option {
 class Options {
  public:
   /// What an option is read into. It must live until the verb has run.
-  using Value =
-      std::variant<int*, double*, std::uint32_t*, std::uint64_t*, std::string*, std::filesystem::path*,
-                   std::optional<int>*, std::optional<double>*, std::optional<std::string>*,
-                   std::vector<int>*, std::vector<double>*, std::vector<std::string>*>;
+  using Value = std::variant<int*, double*, std::uint32_t*, std::uint64_t*, std::string*,
+                             std::filesystem::path*, std::optional<int>*, std::optional<double>*,
+                             std::optional<std::string>*, std::vector<int>*, std::vector<double>*,
+                             std::vector<std::string>*, std::vector<std::filesystem::path>*>;
 
   explicit Options(CLI::App& verb) : verb_(verb) {}
 
@@ -74,6 +75,11 @@ class Options {
         names, {words.begin(), words.end()}, static_cast<std::size_t>(*value),
         [value](std::size_t chosen) { *value = static_cast<Enum>(chosen); }, help);
   }
+  /// A text that `read` takes, or says why it does not.
+  Option add_text(const std::string& names, const std::function<std::string(const std::string&)>& read,
+                  const std::string& help);
+  /// Once all are read: of these one must have been given.
+  void need_one(const std::vector<Option>& options);
   /// Turns `value` on; "!--no-previews" turns it off.
   Option add_flag(const std::string& names, bool* value, const std::string& help);
   /// One of some words; `choose` is given its place among them. Its help says what it is otherwise.

@@ -5,8 +5,8 @@
 
 #include <memory>
 
+#include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
-#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/maps/session_sets.h"
@@ -35,16 +35,7 @@ Result<int> rectify(const RectifyOptions& options, const CommonArguments& common
 
 Run add_rectify(Options& options) {
   const auto a = std::make_shared<RectifyOptions>();
-  options.add("session", &a->session, "Session folder, NAME.weft").required();
-  options.add("--solve", &a->solve, "Id of the solve; default the session's current one");
-  options.add_flag("--draft", &a->is_draft, "A preview will do, of half the size and without masks");
-  options.add("--calibration", &a->calibration, "Calibration folder; default the session's own");
-  options.add("-o,--output", &a->output, "Folder for the maps; default SESSION/rectified/ID");
-  options.add("--mm-per-pixel", &a->mm_per_pixel, "Of the grid; default what the camera sees").above_zero();
-  options.add("--turn", &a->turn_deg, "Degrees that the grid is turned, counterclockwise from above")
-      .in_range(-360.0, 360.0)
-      .shows_default();
-  options.add_choice("--compress", &a->compression, kCompressionNames, "Of EXR files: none, zip, piz");
+  add_options(options, *a);
   return [a](const CommonArguments& common) { return rectify(*a, common); };
 }
 

@@ -13,6 +13,7 @@
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/server/api/api.h"
 #include "app/server/http/client.h"
 #include "app/server/rig/rig_lock.h"
 #include "app/server/rig_server.h"
@@ -33,7 +34,8 @@ struct ServeArguments {
   std::optional<std::string> host;  ///< in place of what the rig file says
   std::optional<int> port;
   std::vector<std::string> archives;
-  bool open = false;  ///< the page, in a browser
+  bool open = false;       ///< the page, in a browser
+  bool describes = false;  ///< prints openapi.json, and serves nothing
 };
 
 constexpr auto kTick = std::chrono::milliseconds(50);
@@ -151,6 +153,10 @@ Result<capture::Rig> rig_to_serve(ServeArguments arguments) {
 }
 
 Result<int> serve(const ServeArguments& arguments, const CommonArguments& common) {
+  if (arguments.describes) {
+    print_json(api_description());
+    return kDone;
+  }
   const std::stop_token stop = stop_on_signal();
   const Result<capture::Rig> rig = rig_to_serve(arguments);
   if (!rig) return rig.error();
@@ -194,6 +200,8 @@ Run add_serve(Options& options) {
       "Folder of sessions to show beside the rig's, with those below it; may be given again. Without a "
       "rig file the server has no rig: library and jobs alone, by default of ~/weft");
   options.add_flag("--open", &a->open, "Open the page in a browser, of a daemon that runs already too");
+  options.add_flag("--describe", &a->describes,
+                   "Only print what the calls take and answer, as GET openapi.json does");
   return [a](const CommonArguments& common) { return serve(*a, common); };
 }
 

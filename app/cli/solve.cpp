@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/cli/solve.h"
-
 #include <fmt/format.h>
 
 #include <memory>
@@ -9,20 +7,21 @@
 #include <utility>
 #include <vector>
 
+#include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/explain.h"
-#include "app/cli/options.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/last_check.h"
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/reflectance.h"
+#include "app/jobs/solve_request.h"
 #include "capture/rig.h"
+#include "core/field_check.h"
 #include "core/files.h"
 #include "core/session.h"
 #include "library/current.h"
-#include "solver/method.h"
 
 namespace weft::app {
 namespace {
@@ -116,7 +115,7 @@ void print_warnings(const std::vector<Verdict>& warnings) {
 
 /// Whether the rig that this machine has is known to have moved before it scanned the session: its last check
 /// did not pass, and none did since the session.
-Result<void> check_moved(SolveArguments& arguments) {
+Result<void> check_moved(SolveRequest& arguments) {
   const Result<Session> session = read_session(arguments.session.folder);
   if (!session || session->shots.empty() || session->document.contains("accepted_moved")) return {};
   const Result<capture::Rig> rig = capture::read_rig(find_rig({}));
@@ -133,29 +132,17 @@ Result<void> check_moved(SolveArguments& arguments) {
   return {};
 }
 
-// Seconds, degrees and the share of the cloth that they hold for, as --explain prints them.
-Result<std::optional<SolvePrice>> price_in(const std::vector<double>& said) {
-  if (said.empty()) return std::optional<SolvePrice>();
-  const bool is_price = said.size() == 3 && said[0] >= 0 && said[1] >= 0 && said[2] >= 0 && said[2] <= 1;
-  if (is_price) return std::optional(SolvePrice{said[0], said[1], said[2], {}});
-  return Error{ErrorKind::kUsage, "a price cannot be read", "--foretold",
-               "three numbers from 0 are wanted, the last at most 1",
-               "copy the line that weft solve --explain prints for the level"};
-}
-
-Result<int> solve(SolveArguments& arguments, const CommonArguments& common) {
+Result<int> solve(SolveRequest& arguments, const CommonArguments& common) {
+  if (Result<void> fits = check_fields(arguments); !fits) return std::move(fits).error();
   const bool is_session = !arguments.session.folder.empty();
   if (is_session && arguments.session.calibration.empty()) {
     if (Result<void> ok = check_moved(arguments); !ok) return std::move(ok).error();
   }
-  if (!is_session && arguments.photos.folder.empty() && arguments.photos.light_file.empty())
-    return Error{ErrorKind::kUsage, "solve needs a session, --photos or --lp", "", "", "See weft --help"};
   if (!arguments.ladder.empty()) return run_ladder(arguments, common);
   if (arguments.explain) return run_explain(arguments, common);
   SolveOptions options = arguments.options;
-  Result<std::optional<SolvePrice>> foretold = price_in(arguments.foretold);
-  if (!foretold) return std::move(foretold).error();
-  options.foretold = std::move(*foretold);
+  if (const std::vector<double>& f = arguments.foretold; !f.empty())
+    options.foretold = SolvePrice{f[0], f[1], f[2], {}};
   if (arguments.wish.is_one()) {
     const Result<LevelPrice> level = chosen_level(arguments, common);
     if (!level) return level.error();
@@ -188,134 +175,12 @@ Result<int> solve(SolveArguments& arguments, const CommonArguments& common) {
   return arguments.strict && is_flawed ? kDoneWithWarnings : kDone;
 }
 
-// An option for the levels, or for the methods that they are compared with.
-Option add_method(Options& options, const std::string& option, const std::string& what, bool quality,
-                  std::string& method) {
-  std::vector<std::string> names, words;
-  for (const solver::MethodName& each : solver::method_names()) {
-    if (each.level.has_value() != quality) continue;
-    names.emplace_back(each.name);
-    words.push_back(fmt::format("{} ({})", each.name, each.help));
-  }
-  return options.add(option, &method, fmt::format("{}: {}", what, fmt::join(words, ", "))).one_of(names);
-}
-
-struct Input {
-  Option session, photos, light_file;
-};
-
-Input add_input(Options& options, SolveArguments& a) {
-  const Input input = {
-      options.add("session", &a.session.folder, "Session folder, NAME.weft"),
-      options.add(
-          "--photos", &a.photos.folder,
-          "Folder of photographs under distant lights: filenames.txt, light_directions.txt (unit x y z, "
-          "x right, y up, z to the camera), light_intensities.txt (R G B), mask.png"),
-      options.add("--lp", &a.photos.light_file,
-                  "RTI light file: a count, then a line \"file x y z\" a photograph")};
-  input.session.excludes(input.photos).excludes(input.light_file);
-  input.photos.excludes(input.light_file);
-  return input;
-}
-
-struct Level {
-  Option explain, ladder;  ///< they write no maps
-};
-
-Level add_level(Options& options, const Option& session, SolveArguments& a) {
-  const Option level = add_method(options, "--quality", "Level", true, a.options.method);
-  const Option by_name =
-      add_method(options, "--method", "Method for comparison", false, a.options.method).excludes(level);
-  const Option explain = options.add_flag(
-      "--explain", &a.explain,
-      "Solve nothing: predict, from a cut of the middle, each level's mean error in degrees, "
-      "the share of the cloth that it holds for, and its seconds here");
-  options
-      .add("--crops", &a.crops,
-           "With --explain: folder for what each level made of the same 512 x 256 pixels, LEVEL_relit.png, "
-           "LEVEL_normal.png and LEVEL_normal.exr")
-      .needs(explain);
-  const Option within = options
-                            .add("--within", &a.wish.within_seconds,
-                                 "Choose the best level that takes so many seconds, by --explain")
-                            .above_zero();
-  const Option to =
-      options
-          .add("--to", &a.wish.to_deg, "Choose the cheapest level expected to be so many degrees off at most")
-          .above_zero();
-  const Option ladder =
-      options
-          .add("--ladder", &a.ladder,
-               "Solve by every level, and draw the same 128 x 128 normals of each into this PNG")
-          .needs(session);
-  const Option foretold =
-      options
-          .add("--foretold", &a.foretold,
-               "What --explain said of this solve, SECONDS,DEGREES,SHARE: solve.json keeps it beside what is "
-               "taken")
-          .by_commas()
-          .one_at_a_time();
-  for (const Option& priced : {explain, within, to, ladder}) foretold.excludes(priced);
-  for (const Option& priced : {explain, within, to, ladder}) priced.excludes(level).excludes(by_name);
-  ladder.excludes(explain).excludes(within).excludes(to);
-  return {explain, ladder};
-}
-
-void add_readings(Options& options, const Option& session, SolveArguments& a) {
-  options
-      .add("--lights", &a.session.leds,
-           "LEDs or photographs to solve from, numbered from 1: 1,4,7; default all")
-      .by_commas()
-      .above_zero();
-  options.add("--calibration", &a.session.calibration, "Calibration folder; default the session's own")
-      .needs(session);
-  options
-      .add(
-          "--second-pose", &a.options.second_pose,
-          "Session of the same cloth lying tilted (weft scan --tilt), in which robust and reference seek its "
-          "lobe too")
-      .needs(session);
-  options
-      .add(
-          "--accept-moved", &a.accept_moved,
-          "Solve although the last check of this rig's calibration did not pass before the scan: the reason, "
-          "which is kept")
-      .needs(session);
-  options.add_choice(
-      "--transfer", &a.photos.transfer, kTransferNames,
-      "How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb");
-}
-
-void add_maps(Options& options, const Level& level, SolveArguments& a) {
-  const Option output =
-      options.add("-o,--output", &a.options.output,
-                  "Folder for the maps; default SESSION/solve/ID, or ./NAME-solve/ID for photographs");
-  for (const Option& unsaved : {level.explain, level.ladder}) unsaved.excludes(output);
-  options.add_choice("--compress", &a.options.compression, kCompressionNames, "Of EXR files: none, zip, piz");
-  options.add("--tile-width", &a.options.tile.width, "Columns a tile (changes no byte of the result)")
-      .in_range(1, 1 << 20)
-      .shows_default();
-  options.add("--tile-height", &a.options.tile.height, "Rows a tile (changes no byte of the result)")
-      .in_range(1, 1 << 20)
-      .shows_default();
-  options.add_flag("!--no-previews", &a.options.previews, "Write no pictures");
-  options.add_flag("--check", &a.check,
-                   "Print how well each light that is left out is predicted from the others");
-  options.add_flag("!--no-deblur", &a.options.deblur, "Leave the blur of the lens as it is");
-  options.add_flag("--condition", &a.options.condition,
-                   "Also write condition.exr: the logarithm of the condition number of the lights that each "
-                   "pixel was solved from");
-  options.add_flag("--strict", &a.strict, "Exit with 2 where pixels have no solution");
-}
-
 Run add_solve(Options& options) {
-  const auto a = std::make_shared<SolveArguments>();
-  const Input input = add_input(options, *a);
-  const Level level = add_level(options, input.session, *a);
-  add_readings(options, input.session, *a);
-  add_maps(options, level, *a);
+  const auto a = std::make_shared<SolveRequest>();
+  add_options(options, *a);
   return [a](const CommonArguments& common) {
     a->photos.lights = a->session.leds;
+    a->options.method = a->method_asked();
     return solve(*a, common);
   };
 }

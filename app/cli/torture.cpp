@@ -5,11 +5,12 @@
 #include <memory>
 
 #include "app/cli/carried_scenes.h"
+#include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
-#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/solve.h"
+#include "app/jobs/torture_request.h"
 #include "core/files.h"
 #include "core/temporary_folder.h"
 #include "simulator/scene/scene.h"
@@ -55,10 +56,9 @@ Result<int> torture(const fs::path& session, const CommonArguments& common) {
 }
 
 Run add_torture(Options& options) {
-  const auto session = std::make_shared<fs::path>("torture.weft");
-  options.add("-o,--output", session.get(), "Session folder, NAME.weft, which may be there already")
-      .shows_default();
-  return [session](const CommonArguments& common) { return torture(*session, common); };
+  const auto a = std::make_shared<TortureRequest>();
+  add_options(options, *a);
+  return [a](const CommonArguments& common) { return torture(a->session, common); };
 }
 
 }  // namespace

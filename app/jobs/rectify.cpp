@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/jobs/described_fields.h"
 #include "core/calibration.h"
+#include "core/field_check.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/solve_maps.h"
@@ -182,19 +184,21 @@ std::uint64_t bytes_of_rectified(Size size) {
   return 62 * static_cast<std::uint64_t>(size.pixels());
 }
 
-Result<void> check_options(const RectifyOptions& options) {
-  const auto refused = [](const char* name, const char* rule) {
-    return Error{ErrorKind::kUsage, "option is out of its range", name, rule, "give a value in that range"};
-  };
-  if (!(options.turn_deg >= -360 && options.turn_deg <= 360)) return refused("turn_deg", "it is -360 to 360");
-  if (options.band_rows < 1) return refused("band_rows", "it is 1 or more");
-  return {};
-}
-
 }  // namespace
 
+void describe(Fields& fields, RectifyOptions& o) {
+  describe_session(fields, o.session);
+  describe_solve(fields, o.solve, o.is_draft, o.calibration);
+  describe_output(fields, o.output, "Folder for the maps; default SESSION/rectified/ID");
+  describe_grid(fields, o.mm_per_pixel);
+  fields.value({"turn_deg", "Degrees that the grid is turned, counterclockwise from above", {-360, 360}},
+               o.turn_deg);
+  describe_compression(fields, o.compression);
+  fields.require(o.band_rows >= 1, "band_rows", "must be 1 or more");
+}
+
 Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobContext& context) {
-  if (const Result<void> ok = check_options(options); !ok) return ok.error();
+  if (const Result<void> ok = check_fields(options); !ok) return ok.error();
   const Result<Session> session = read_session(options.session);
   if (!session) return session.error();
   const Result<Calibration> calibration = calibration_with_camera(
@@ -210,8 +214,8 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   const CameraModel seen = seen_from(session->pose, session->cloth_height_mm, *calibration->camera);
   const Result<CameraModel> camera = camera_of_maps(seen, maps->size(), solve->folder);
   if (!camera) return camera.error();
-  const Result<TableGrid> grid =
-      material::table_grid(*camera, {options.mm_per_pixel, session->cloth_height_mm, options.turn_deg});
+  const Result<TableGrid> grid = material::table_grid(
+      *camera, {options.mm_per_pixel.value_or(0), session->cloth_height_mm, options.turn_deg});
   if (!grid) return grid.error();
 
   const Json inputs = {{"version", kVersion},

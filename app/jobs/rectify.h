@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/compression.h"
+#include "core/fields.h"
 #include "core/job.h"
 #include "core/json_document.h"
 #include "core/result.h"
@@ -13,15 +15,16 @@ namespace weft::app {
 
 struct RectifyOptions {
   std::filesystem::path session;
-  std::string solve;                  ///< id of the solve; empty: the session's current one
-  bool is_draft = false;              ///< a preview will do
-  std::filesystem::path calibration;  ///< empty: the session's own
-  std::filesystem::path output;       ///< empty: <session>/rectified/<id>
-  double mm_per_pixel = 0;            ///< 0: what the camera sees at the grid's centre; else above 0
-  double turn_deg = 0;  ///< of the grid's columns against the rig's x axis, counterclockwise; -360 to 360
+  std::string solve;                        ///< id of the solve; empty: the session's current one
+  bool is_draft = false;                    ///< a preview will do
+  std::filesystem::path calibration;        ///< empty: the session's own
+  std::filesystem::path output;             ///< empty: <session>/rectified/<id>
+  std::optional<double> mm_per_pixel = {};  ///< none: what the camera sees at the grid's centre
+  double turn_deg = 0;  ///< of the grid's columns against the rig's x axis, counterclockwise
   Compression compression = Compression::kNone;  ///< of EXR files
   int band_rows = 64;                            ///< changes no byte; from 1
 };
+void describe(Fields& fields, RectifyOptions& options);
 
 /// What a rectification left behind.
 struct RectifyReport {

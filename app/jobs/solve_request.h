@@ -7,14 +7,17 @@
 
 #include "app/jobs/explain.h"
 #include "app/jobs/solve.h"
+#include "core/fields.h"
 
 namespace weft::app {
 
-/// What `weft solve` is told: one of `session` and `photos` is named.
-struct SolveArguments {
+/// What `weft solve` and a job that solves are told: one of `session` and `photos` is named.
+struct SolveRequest {
   SessionOptions session;
   PhotoOptions photos;
   SolveOptions options;
+  std::string quality;  ///< a level; with `method` empty: standard
+  std::string method;   ///< one that levels are compared with; empty: a level
   bool explain = false;
   std::filesystem::path crops;  ///< where explain keeps what each level made of its cut; empty: nowhere
   LevelWish wish;
@@ -23,6 +26,15 @@ struct SolveArguments {
   std::string accept_moved;      ///< why to solve though the rig is known to have moved; empty: not
   bool check = false;            ///< print how well left-out lights are predicted
   bool strict = false;           ///< pixels without a solution, and warnings, end with exit code 2
+
+  const std::string& method_asked() const;
 };
+void describe(Fields& fields, SolveRequest& request);
+
+/// A job that prices what a solve would take.
+struct PriceRequest {
+  SolveRequest solve;
+};
+void describe(Fields& fields, PriceRequest& request);
 
 }  // namespace weft::app

@@ -74,7 +74,7 @@ const Prefixes kRoots = {"app/",       "batch/",    "bench/",   "calibration/", 
                          "simulator/", "solver/",   "tests/",   "virtual_rig/"};
 
 const std::vector<Door> kDoors = {
-    {"CLI/", {"app/cli/", "virtual_rig/program/"}},
+    {"CLI/", {"app/cli/", "tests/app/cli/", "virtual_rig/program/"}},
     {"OpenEXR/", {"core/image_io/", "tests/core/image_io/", "bench/"}},
     {"OpenImageIO/", {}},
     {"jpeglib.h", {"core/image_io/"}},

@@ -309,7 +309,7 @@ TEST(Usage, ErrorsEndWith64AndLeaveNothing) {
       {{"weave"}, {"weave"}},
       {{"simulate"}, {"scene"}},
       {{"simulate", "a.toml"}, {"--output"}},
-      {{"solve"}, {"needs a session, --photos or --lp"}},
+      {{"solve"}, {"session, --photos or --lp is required"}},
       {{"solve", "a.weft", "--photos", "b"}, {"--photos"}},
       {{"solve", "--photos", "b", "--lp", "c"}, {"--lp"}},
       {{"solve", "a.weft", "--quality", "perfect"}, {"--quality", "perfect"}},

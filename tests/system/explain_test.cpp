@@ -141,7 +141,7 @@ TEST_F(Explain, IsKeptByASolveThatIsToldOfIt) {
   EXPECT_EQ(Json::parse(bytes_of(maps / "solve.json")).at("foretold"),
             Json({{"seconds", 2.5}, {"mean_deg", 0.75}, {"solved", 0.99}}));
   for (const char* wrong : {"2.5,0.75", "2.5,0.75,1.5", "-1,0.75,1"})
-    expect_refusal(work_, {"solve", session_.string(), "-q", "--foretold", wrong}, 64, {"--foretold"});
+    expect_refusal(work_, {"solve", session_.string(), "-q", "--foretold", wrong}, 64, {"foretold"});
 }
 
 TEST_F(Explain, DrawsTheSameCropAtEveryLevel) {

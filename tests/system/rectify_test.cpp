@@ -129,7 +129,7 @@ TEST_F(Rectify, RefusesInWordsAndLeavesNothingBehind) {
   wrong.mm_per_pixel = -1;
   expect_refused(wrong, ErrorKind::kUsage, "mm_per_pixel");
   wrong.mm_per_pixel = 1e-6;
-  expect_refused(wrong, ErrorKind::kUsage, "pixels");
+  expect_refused(wrong, ErrorKind::kUsage, "mm_per_pixel");
   wrong = options();
   wrong.turn_deg = 400;
   expect_refused(wrong, ErrorKind::kUsage, "turn_deg");

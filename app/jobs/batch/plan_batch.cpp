@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/jobs/batch/follow_ups.h"
+#include "app/jobs/batch/lean.h"
 #include "app/jobs/batch/plan_file.h"
 #include "app/jobs/batch/sample.h"
 #include "app/jobs/batch/survey.h"
@@ -54,6 +55,11 @@ Result<std::vector<std::size_t>> levels_of(const PlanBatchOptions& options) {
                "name one of them"};
 }
 
+bool can_follow(const std::string& then) {
+  constexpr std::string_view kExport = "export:";
+  return then == "maps" || (then.starts_with(kExport) && then.size() > kExport.size());
+}
+
 // A batch under plan. Candidates that can be solved have a forecast for each of levels_.
 class Planning {
  public:
@@ -68,7 +74,7 @@ class Planning {
     plan_.header.sample_seconds = watch.lap();
     if (Result<void> ok = decide(); !ok) return std::move(ok).error();
     add_totals();
-    batch::share_out(plan_.jobs, options_.task_seconds);
+    batch::share_out(plan_.jobs, 60 * options_.task_minutes);
     const std::string text = batch::text_of(plan_);
     if (const Result<void> written = write_plan(options_.plan, text); !written) return written.error();
     seconds += watch.lap();
@@ -135,7 +141,8 @@ class Planning {
       of_open.push_back(i);
     }
     std::vector<batch::Measured> measured;
-    std::vector<std::size_t> unfit, sample = batch::choose_sample(open, options_.sample);
+    std::vector<std::size_t> unfit,
+        sample = batch::choose_sample(open, static_cast<std::size_t>(options_.sample));
     for (std::size_t& each : sample) each = of_open[each];
     const JobContext silent = {context_.threads, context_.stop};
     std::optional<SharedSeconds> shared;
@@ -387,6 +394,64 @@ Result<void> check_plan_options(const PlanBatchOptions& options) {
 }
 
 }  // namespace
+
+void describe(Fields& fields, PlanBatchOptions& o) {
+  fields.value({.name = "quality", .says = "Level of all of them", .words = level_names()}, o.quality);
+  fields.value({.name = "to_deg",
+                .says = "Of each the cheapest level expected to be so many degrees off at most",
+                .range = kAboveZero},
+               o.to_deg);
+  fields.value(
+      {.name = "within_s",
+       .says = "Node-hours for all of them, spent where a second buys most degrees: 8h, 30m, 90s, 2d",
+       .range = kAboveZero,
+       .units = {{"s"}, {"m", 60}, {"h", 3600}, {"d", 86400}}},
+      o.within_seconds);
+  fields.exclude("quality", "to_deg");
+  fields.exclude("quality", "within_s");
+  fields.exclude("to_deg", "within_s");
+  fields.value({.name = "least_change_deg",
+                .says = "Leave out sessions whose maps would turn by less than so many degrees, as measured "
+                        "on the sample",
+                .range = kAboveZero},
+               o.least_change_deg);
+  fields.value(
+      {.name = "calibration",
+       .says = "Calibration folder in place of the own ones of the sessions of its rig; may be given "
+               "again",
+       .path = PathTo::kFolder,
+       .is_said_again = true},
+      o.calibrations);
+  fields.value({"then", "Made of each solve, by commas: maps, export:PRESET"}, o.product.then);
+  fields.require(std::ranges::all_of(o.product.then, can_follow), "then", "must be maps, or export:PRESET");
+  describe_kept_maps(fields, o.product.keep, o.product.half);
+  fields.value({.name = "compress",
+                .says = "Of EXR files: none, zip, piz",
+                .words = {kCompressionNames.begin(), kCompressionNames.end()}},
+               o.product.compression);
+  fields.value({"sample", "Sessions whose levels are measured", {0, 100000}}, o.sample);
+  fields.require(o.sample > 0 || !(o.to_deg || o.within_seconds), "sample",
+                 "must be above 0 where levels are chosen by what was measured");
+  fields.value(
+      {.name = "task_minutes", .says = "Of a task", .range = {0.001, 10000}, .option = "--task-minutes"},
+      o.task_minutes);
+  fields.value({.name = "output",
+                .says = "Folder for solves, where the archive cannot be written",
+                .said = Said::kAtThisMachine},
+               o.output);
+  fields.value(
+      {.name = "plan", .says = "File of the plan", .option = "-o,--plan", .said = Said::kAtThisMachine},
+      o.plan);
+}
+
+void describe_kept_maps(Fields& fields, std::vector<std::string>& keep, bool& half) {
+  fields.value({.name = "keep",
+                .says = "Maps of a solve that stay, by commas; default all: normal, albedo, sigma, residual, "
+                        "status",
+                .words = {kMapNames.begin(), kMapNames.end()}},
+               keep);
+  fields.value({"half", "Normals as half floats, true to 0.03 degrees"}, half);
+}
 
 Result<PlanBatchReport> plan_batch(const PlanBatchOptions& options, const JobContext& context) {
   if (Result<void> ok = check_plan_options(options); !ok) return std::move(ok).error();

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "batch/plan.h"
+#include "core/fields.h"
 #include "core/job.h"
 #include "core/result.h"
 
@@ -20,14 +20,18 @@ struct PlanBatchOptions {
   std::optional<double> within_seconds = {};    ///< for all: spent where a second buys most degrees
   std::optional<double> least_change_deg = {};  ///< maps that would turn by less are left as they are
   batch::Product product;
-  std::vector<std::filesystem::path>
-      calibrations;         ///< in place of the own ones of the sessions of their rigs
-  std::size_t sample = 50;  ///< sessions that are measured
-  double task_seconds = 600;
-  std::filesystem::path
-      output;                  ///< where solves go, for archives that cannot be written; empty: each session
-  std::filesystem::path plan;  ///< the file to write
+  /// In place of the own ones of the sessions of their rigs.
+  std::vector<std::filesystem::path> calibrations;
+  int sample = 50;           ///< sessions that are measured
+  double task_minutes = 10;  ///< of a task
+  /// Where solves go, for archives that cannot be written; empty: each session.
+  std::filesystem::path output;
+  std::filesystem::path plan = "batch.jsonl";  ///< the file to write
 };
+/// All but the sessions.
+void describe(Fields& fields, PlanBatchOptions& options);
+/// Which maps of a solve stay.
+void describe_kept_maps(Fields& fields, std::vector<std::string>& keep, bool& half);
 
 struct PlanBatchReport {
   batch::Plan plan;

@@ -17,6 +17,7 @@
 #include "app/jobs/batch/forked_work.h"
 #include "app/jobs/batch/lean.h"
 #include "app/jobs/batch/outside.h"
+#include "app/jobs/batch/plan_batch.h"
 #include "app/jobs/batch/plan_file.h"
 #include "app/jobs/batch/session_work.h"
 #include "core/descriptor.h"
@@ -252,7 +253,7 @@ class BatchRun {
       work = [session](const std::stop_token& stop) { return read_ahead(session, stop); };
     }
     Result<std::unique_ptr<ForkedWork>> started =
-        ForkedWork::start(work, stage == Stage::kSolve ? options_.memory_bytes : 0);
+        ForkedWork::start(work, stage == Stage::kSolve ? options_.memory_bytes() : 0);
     if (!started) return std::move(started).error();
     active_.push_back({stage, index, std::move(*started), Steady::now()});
     return {};
@@ -322,7 +323,7 @@ class BatchRun {
 
   Error why_it_ended(const ForkedEnd& end, const Item& item) const {
     const std::string limit =
-        options_.memory_bytes > 0 ? fmt::format("it may hold {} MB", options_.memory_bytes >> 20) : "";
+        options_.memory_bytes() > 0 ? fmt::format("it may hold {} MB", options_.memory_bytes() >> 20) : "";
     if (end.code == ForkedWork::kOutOfMemory)
       return {ErrorKind::kTryAgain, "out of memory", item.job.session, limit,
               "run it with more --memory, or on a larger machine"};
@@ -445,6 +446,59 @@ Result<void> check_options(const RunBatchOptions& options, const batch::Header& 
 }
 
 }  // namespace
+
+void describe(Fields& fields, RunBatchOptions& o) {
+  fields.value({.name = "plan",
+                .says = "Plan of weft batch plan",
+                .need = Need::kMustSay,
+                .option = "",
+                .said = Said::kAtThisMachine},
+               o.plan);
+  fields.value({.name = "task",
+                .says = "One task of it, from 0; default all",
+                .range = kNotNegative,
+                .said = Said::kAtThisMachine},
+               o.task);
+  fields.value({.name = "at_once",
+                .says = "Sessions at a time, which share the threads",
+                .range = {1, 1024},
+                .option = "--jobs"},
+               o.jobs);
+  fields.value({.name = "array_from",
+                .says = "In an array of Slurm: the task that is so much more than its index. It is queued "
+                        "again where it ends with 75, up to three times",
+                .range = kNotNegative,
+                .said = Said::kAtThisMachine},
+               o.array_from);
+  fields.value(
+      {.name = "merge",
+       .says = "Write the report afterwards, as weft batch merge does, and end with its exit code: 2 "
+               "where a session failed or is missing. Not where it was stopped",
+       .said = Said::kAtThisMachine},
+      o.merges);
+  for (const char* whole : {"at_once", "array_from", "merge"}) fields.exclude(whole, "task");
+  fields.value({"retry_failed", "Try sessions again that failed before"}, o.retry_failed);
+  describe_kept_maps(fields, o.keep, o.half);
+  fields.value({.name = "fetch",
+                .says = "Command that brings a session here before it is solved: 'rclone copy {src} {dst}'",
+                .said = Said::kAtThisMachine},
+               o.fetch);
+  fields.value({.name = "store",
+                .says = "Command that takes a solve away: all but solve.json, then solve.json alone as "
+                        "{dst}/solve.json",
+                .said = Said::kAtThisMachine},
+               o.store);
+  fields.value({.name = "scratch",
+                .says = "Folder for fetched sessions; default the system's temporary one",
+                .said = Said::kAtThisMachine},
+               o.scratch);
+  fields.value({.name = "memory_mb",
+                .says = "That a session may hold, else it is lost alone: 1500M, 2G",
+                .range = kAboveZero,
+                .option = "--memory",
+                .units = {{"M"}, {"G", 1024}}},
+               o.memory_mb);
+}
 
 Result<RunBatchReport> run_batch(const RunBatchOptions& options, const JobContext& context,
                                  const AfterSession& after) {

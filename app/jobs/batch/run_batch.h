@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "batch/outcome.h"
+#include "core/fields.h"
 #include "core/job.h"
 #include "core/result.h"
 
@@ -23,8 +24,13 @@ struct RunBatchOptions {
   bool half = false;                   ///< though the plan does not say so
   std::string fetch, store;            ///< commands with {src} and {dst}; empty: none
   std::filesystem::path scratch = {};  ///< where fetched sessions go; empty: the system's temporary folder
-  std::uint64_t memory_bytes = 0;      ///< of a session at most; 0: as much as there is
+  std::optional<double> memory_mb;     ///< of a session at most; none: as much as there is
+  std::optional<int> array_from;       ///< `task` is this more than the index of the array that Slurm runs
+  bool merges = false;                 ///< the report is written afterwards
+
+  std::uint64_t memory_bytes() const { return static_cast<std::uint64_t>(memory_mb.value_or(0) * (1 << 20)); }
 };
+void describe(Fields& fields, RunBatchOptions& options);
 
 struct RunBatchReport {
   int kept = 0;           ///< sessions that were done before

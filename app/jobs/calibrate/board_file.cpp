@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
-#include <algorithm>
-#include <array>
+#include <string>
+#include <utility>
 
 #include "app/jobs/calibrate/board_photographs.h"
+#include "app/jobs/calibrate/sheet_files.h"
 #include "core/files.h"
+#include "core/toml/field_toml.h"
+#include "core/toml/toml_keys.h"
 
 namespace weft::app {
 namespace {
@@ -19,69 +21,74 @@ Error bad_key(const fs::path& file, const std::string& key, std::string why) {
           "see docs/calibration.md for the keys of board.toml"};
 }
 
-// The value of a key, if it is there and `said` holds none.
-template <typename T>
-Result<void> take(const toml::table& table, const fs::path& file, const char* key, std::optional<T>& said) {
-  const toml::node* node = table.get(key);
-  if (node == nullptr || said) return {};
-  const std::optional<T> value = node->value<T>();
-  if (!value) return bad_key(file, key, "its value is of the wrong kind");
-  said = value;
-  return {};
+void describe_board(Fields& fields, BoardSettings& b, const char* kind) {
+  fields.value({.name = kind,
+                .says = "What is printed; default that of board.toml",
+                .words = {"charuco", "checkerboard"}},
+               b.kind);
+  fields.value({"squares_x", "Squares a row", calibration::kBoardSquares}, b.squares_x);
+  fields.value({"squares_y", "Squares a column", calibration::kBoardSquares}, b.squares_y);
+  fields.value({.name = "square_mm",
+                .says = "Side of a square, mm",
+                .range = calibration::kBoardSquare_mm,
+                .option = "--square-mm"},
+               b.square_mm);
+  fields.value({"marker_share", "ChArUco: side of a marker over that of a square", calibration::kMarkerShare},
+               b.marker_share);
+  fields.value({"dictionary", "ChArUco: as OpenCV names it, DICT_5X5_100"}, b.dictionary);
+  fields.value({.name = "thickness_mm",
+                .says = "Of the board: the table is so far below its print",
+                .range = kBoardThickness_mm,
+                .option = "--thickness-mm"},
+               b.thickness_mm);
 }
 
-Result<void> take_all(const fs::path& file, BoardSettings& said) {
-  const Result<std::string> text = read_text(file);
-  if (!text) return text.error();
-  toml::table table;
-  try {
-    table = toml::parse(*text);
-  } catch (const toml::parse_error& e) {
-    return bad_key(file, fmt::format("line {}", e.source().begin.line), std::string(e.description()));
-  }
-  for (const auto& [key, value] : table) {
-    constexpr std::array kKeys = {"kind",         "squares_x",  "squares_y",   "square_mm",
-                                  "marker_share", "dictionary", "thickness_mm"};
-    const std::string name(key.str());
-    if (std::find(kKeys.begin(), kKeys.end(), name) == kKeys.end())
-      return bad_key(file, name, "there is no such key");
-  }
-  for (const Result<void>& taken :
-       {take(table, file, "kind", said.kind), take(table, file, "squares_x", said.squares_x),
-        take(table, file, "squares_y", said.squares_y), take(table, file, "square_mm", said.square_mm),
-        take(table, file, "marker_share", said.marker_share),
-        take(table, file, "dictionary", said.dictionary),
-        take(table, file, "thickness_mm", said.thickness_mm)}) {
-    if (!taken) return taken;
-  }
-  return {};
+/// What the file says, where the options say nothing.
+Result<BoardSettings> settings_of(const fs::path& file, const BoardSettings& options) {
+  if (!is_there(file)) return options;
+  const Result<toml::table> table = read_toml(file);
+  if (!table) return table.error();
+  Result<BoardDescription> said = read_fields<BoardDescription>(*table, file.string(), kCalibrationPage);
+  if (!said) return std::move(said).error();
+  const auto over = [](const auto& by_option, auto& in_file) {
+    if (by_option) in_file = by_option;
+  };
+  over(options.kind, said->kind);
+  over(options.squares_x, said->squares_x);
+  over(options.squares_y, said->squares_y);
+  over(options.square_mm, said->square_mm);
+  over(options.marker_share, said->marker_share);
+  over(options.dictionary, said->dictionary);
+  over(options.thickness_mm, said->thickness_mm);
+  return BoardSettings(*said);
 }
 
 }  // namespace
 
+void describe(Fields& fields, BoardSettings& settings) {
+  describe_board(fields, settings, "board");
+}
+
+void describe(Fields& fields, BoardDescription& board) {
+  describe_board(fields, board, "kind");
+}
+
 Result<PrintedBoard> read_board_file(const fs::path& file, const BoardSettings& options) {
-  BoardSettings said = options;
-  if (is_there(file)) {
-    if (const Result<void> ok = take_all(file, said); !ok) return ok.error();
-  }
+  const Result<BoardSettings> said = settings_of(file, options);
+  if (!said) return said.error();
   PrintedBoard out;
   calibration::Board& board = out.board;
-  const std::string kind = said.kind.value_or("charuco");
-  if (kind != "charuco" && kind != "checkerboard")
-    return bad_key(file, "kind", fmt::format("\"{}\" is neither charuco nor checkerboard", kind));
-  board.kind = kind == "charuco" ? calibration::BoardKind::kCharuco : calibration::BoardKind::kCheckerboard;
-  if (!said.squares_x) return bad_key(file, "squares_x", "it is missing");
-  if (!said.squares_y) return bad_key(file, "squares_y", "it is missing");
-  if (!said.square_mm) return bad_key(file, "square_mm", "it is missing");
-  board.squares_x = *said.squares_x;
-  board.squares_y = *said.squares_y;
-  board.square_mm = *said.square_mm;
-  board.marker_share = said.marker_share.value_or(board.marker_share);
-  board.dictionary = said.dictionary.value_or(board.dictionary);
-  out.thickness_mm = said.thickness_mm.value_or(0);
-  if (!kBoardThickness_mm.holds(out.thickness_mm))
-    return bad_key(file, "thickness_mm",
-                   fmt::format("it must be {:g} to {:g}", kBoardThickness_mm.least, kBoardThickness_mm.most));
+  board.kind = said->kind.value_or("charuco") == "charuco" ? calibration::BoardKind::kCharuco
+                                                           : calibration::BoardKind::kCheckerboard;
+  if (!said->squares_x) return bad_key(file, "squares_x", "it is missing");
+  if (!said->squares_y) return bad_key(file, "squares_y", "it is missing");
+  if (!said->square_mm) return bad_key(file, "square_mm", "it is missing");
+  board.squares_x = *said->squares_x;
+  board.squares_y = *said->squares_y;
+  board.square_mm = *said->square_mm;
+  board.marker_share = said->marker_share.value_or(board.marker_share);
+  board.dictionary = said->dictionary.value_or(board.dictionary);
+  out.thickness_mm = said->thickness_mm.value_or(0);
   if (const Result<void> ok = check_board(board); !ok) return ok.error();
   return out;
 }

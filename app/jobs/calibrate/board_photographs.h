@@ -31,6 +31,10 @@ struct BoardSettings {
 };
 void describe(Fields& fields, BoardSettings& settings);
 
+/// The same as board.toml says it.
+struct BoardDescription : BoardSettings {};
+void describe(Fields& fields, BoardDescription& board);
+
 /// A board that lies on something.
 struct PrintedBoard {
   calibration::Board board;

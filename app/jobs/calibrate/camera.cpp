@@ -129,28 +129,6 @@ Result<std::vector<BoardEdge>> edges_of(const fs::path& folder, const calibratio
 
 }  // namespace
 
-void describe(Fields& fields, BoardSettings& b) {
-  fields.value({.name = "board",
-                .says = "What is printed; default that of board.toml",
-                .words = {"charuco", "checkerboard"}},
-               b.kind);
-  fields.value({"squares_x", "Squares a row", calibration::kBoardSquares}, b.squares_x);
-  fields.value({"squares_y", "Squares a column", calibration::kBoardSquares}, b.squares_y);
-  fields.value({.name = "square_mm",
-                .says = "Side of a square, mm",
-                .range = calibration::kBoardSquare_mm,
-                .option = "--square-mm"},
-               b.square_mm);
-  fields.value({"marker_share", "ChArUco: side of a marker over that of a square", calibration::kMarkerShare},
-               b.marker_share);
-  fields.value({"dictionary", "ChArUco: as OpenCV names it, DICT_5X5_100"}, b.dictionary);
-  fields.value({.name = "thickness_mm",
-                .says = "Of the board: the table is so far below its print",
-                .range = kBoardThickness_mm,
-                .option = "--thickness-mm"},
-               b.thickness_mm);
-}
-
 void describe(Fields& fields, CalibrateCameraOptions& o) {
   describe_input(
       fields, o.input,

@@ -173,4 +173,11 @@ Result<ChartColors> read_chart_colors(const fs::path& input) {
   return colors;
 }
 
+void describe(Fields& fields, ChartEdition& chart) {
+  fields.value({.name = "edition",
+                .says = "When the chart was made: from November 2014 on, or before",
+                .words = {"2014", "before 2014"}},
+               chart.edition);
+}
+
 }  // namespace weft::app

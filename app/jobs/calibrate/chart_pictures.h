@@ -8,6 +8,7 @@
 
 #include "calibration/color/chart_reference.h"
 #include "core/calibration.h"
+#include "core/fields.h"
 #include "core/image.h"
 #include "core/job.h"
 #include "core/raw_frame.h"
@@ -45,5 +46,11 @@ struct ChartColors {
   std::string name;  ///< for people
 };
 Result<ChartColors> read_chart_colors(const std::filesystem::path& input);
+
+/// What chart.toml says of a chart whose colours are published.
+struct ChartEdition {
+  std::string edition = "2014";
+};
+void describe(Fields& fields, ChartEdition& chart);
 
 }  // namespace weft::app

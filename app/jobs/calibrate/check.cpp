@@ -452,6 +452,7 @@ void describe(Fields& fields, CalibrateCheckOptions& o) {
        .path = PathTo::kSessionOrSet},
       o.session);
   fields.exclude("session", "input");
+  fields.need_one({"input", "session"});
   fields.value({.name = "from",
                 .says = "The calibration in question; default each session's own",
                 .path = PathTo::kFolder},

@@ -30,7 +30,7 @@ struct ExportOptions {
   std::filesystem::path output = {};
   std::filesystem::path material_base = {};  ///< in place of the folder's own, of a material that was built
   std::string name = {};                     ///< of the cloth in file names; empty: as it is called
-  int size_px = 0;                           ///< of the longer side; 0: as the preset has it
+  std::optional<int> size_px = {};           ///< of the longer side; none: as the preset has it
   bool is_dx10 = false;                      ///< DDS with DX10 headers alone
   std::optional<double> to_deg = {};         ///< normals lose at most this in the mean: chooses their bits
 };

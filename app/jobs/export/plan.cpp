@@ -30,12 +30,12 @@ Error unfit_export(std::string where, std::string why, std::string remedy) {
 // The size of the files: what was asked for, else what the preset allows.
 Result<Size> size_of(const ExportOptions& options, const MapFolder& folder, const Preset& preset) {
   const int longer = std::max(folder.size.width, folder.size.height);
-  if (options.size_px > longer) {
+  if (options.size_px && *options.size_px > longer) {
     return Error{ErrorKind::kBadData, "the maps cannot be exported", "--size",
-                 fmt::format("{} pixels are asked for, the maps have {}", options.size_px, longer),
+                 fmt::format("{} pixels are asked for, the maps have {}", *options.size_px, longer),
                  "ask for at most as many: pixels that were not scanned are not made up"};
   }
-  const int asked = options.size_px > 0 ? options.size_px : preset.most_px;
+  const int asked = options.size_px.value_or(preset.most_px);
   if (asked == 0 || asked >= longer) return folder.size;
   const auto side = [&](int px) {
     return std::max(1, static_cast<int>(std::lround(static_cast<double>(px) * asked / longer)));

@@ -301,7 +301,7 @@ Result<Json> make_set(const MapsOptions& options, const Session& session, const 
 
 }  // namespace
 
-Result<RectifyReport> rectified_maps(const MapsOptions& options, double mm_per_pixel,
+Result<RectifyReport> rectified_maps(const MapsOptions& options, std::optional<double> mm_per_pixel,
                                      const JobContext& context) {
   RectifyOptions rectify;
   rectify.session = options.session;

@@ -33,8 +33,8 @@ struct MapsOptions {
   /// R, G, B of the table, 0 to 1, which rims of holes hold a share of: it is taken out. Wants `bare`; none:
   /// it stays.
   std::vector<double> table_albedo;
-  double mm_per_pixel = 0;  ///< of the grid; 0: what the camera sees
-  bool is_preview = false;  ///< on a grid kPreviewFactor times as coarse; earlier previews go
+  std::optional<double> mm_per_pixel = {};  ///< of the grid; none: what the camera sees
+  bool is_preview = false;                  ///< on a grid kPreviewFactor times as coarse; earlier previews go
   Compression compression = Compression::kNone;
 };
 
@@ -47,9 +47,9 @@ struct MapsReport {
   Json document;           ///< maps.json, with what is stale of the solve today
 };
 
-/// The maps of the solve on a grid of pixels of this size, 0: what the camera sees. Errors of
+/// The maps of the solve on a grid of pixels of this size, none: what the camera sees. Errors of
 /// rectify_session().
-Result<RectifyReport> rectified_maps(const MapsOptions& options, double mm_per_pixel,
+Result<RectifyReport> rectified_maps(const MapsOptions& options, std::optional<double> mm_per_pixel,
                                      const JobContext& context);
 
 /// Puts the maps of a solve on a square grid of the table (rectify_session()), finishes them by the recipe,

@@ -5,21 +5,12 @@
 #include <utility>
 
 #include "app/server/api/descriptions.h"
+#include "app/server/api/job_kinds.h"
 #include "app/server/api/scan_body.h"
 #include "core/files.h"
 
 namespace weft::app {
 namespace {
-
-Json whole_description(const std::vector<Resource>& resources) {
-  Json whole = Json::parse(common_description());
-  for (const Resource& resource : resources) {
-    const Json part = Json::parse(resource.description);
-    whole["paths"].update(part["paths"]);
-    whole["components"]["schemas"].update(part["schemas"]);
-  }
-  return whole;
-}
 
 /// Whether a call asks something of board or camera.
 bool is_of_devices(const Route& route) {
@@ -43,6 +34,25 @@ Result<Json> command_in(const RigParts& parts, const Call& call) {
   return body;
 }
 
+Json api_description() {
+  Json whole = Json::parse(common_description());
+  Json paths = Json::object(), schemas = whole["components"]["schemas"];
+  for (const char* resource :
+       {batches_description(), calibrations_description(), control_description(), devices_description(),
+        events_description(), exports_description(), frames_description(), jobs_description(),
+        library_description(), login_description(), maps_description(), materials_description(),
+        rig_description(), scan_description(), server_description(), sessions_description(),
+        solves_description(), virtual_rig_description()}) {
+    const Json part = Json::parse(resource);
+    paths.update(part["paths"]);
+    schemas.update(part["schemas"]);
+  }
+  schemas.update(job_schemas());
+  whole["components"]["schemas"] = std::move(schemas);
+  whole["paths"] = std::move(paths);
+  return whole;
+}
+
 std::vector<Route> api_routes(const RigParts& parts) {
   std::vector<Resource> resources = {
       server_resource(parts),  login_resource(parts),     rig_resource(parts),
@@ -52,7 +62,7 @@ std::vector<Route> api_routes(const RigParts& parts) {
       solves_resource(parts),  maps_resource(parts),      virtual_rig_resource(parts),
       exports_resource(parts), materials_resource(parts), batches_resource(parts)};
   std::vector<Route> routes;
-  Reply description = json_reply(whole_description(resources));
+  Reply description = json_reply(api_description());
   description.keeping = Keeping::kAskAgain;
   description.tag = sha256_of(description.body);
   routes.push_back({"GET", "/api/v1/openapi.json",

@@ -44,10 +44,9 @@ struct RigParts {
 /// What is asked for begins: the answer tells how to follow it.
 inline constexpr int kAccepted = 202;
 
-/// The calls of one resource, and its part of the OpenAPI file.
+/// The calls of one resource.
 struct Resource {
   std::vector<Route> routes;
-  const char* description;
 };
 
 // One file each. The parts must outlive the routes.
@@ -72,6 +71,9 @@ Resource events_resource(const RigParts& parts);
 
 /// The body of a call by who may command the rig. The errors of parse_body() and Controls::commander().
 Result<Json> command_in(const RigParts& parts, const Call& call);
+
+/// openapi.json: all calls and what they take and answer (OpenAPI 3).
+Json api_description();
 
 /// Every call of the interface, GET openapi.json among them.
 std::vector<Route> api_routes(const RigParts& parts);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/server/api/job_body.h"
+#include "app/server/api/job_places.h"
 #include "app/server/jobs/job.h"
 #include "core/result.h"
 
-// Jobs that plan and run batches of solves, as read_job_body() reads them.
+// Jobs that plan and run batches of solves, as their kinds add it (job_kinds.h).
 
 namespace weft::app {
 

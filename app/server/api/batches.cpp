@@ -13,7 +13,6 @@
 #include "app/jobs/batch/merge_batch.h"
 #include "app/server/api/api.h"
 #include "app/server/api/batch_place.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/viewed.h"
 #include "core/files.h"
@@ -337,8 +336,7 @@ Resource batches_resource(const RigParts& parts) {
            {"DELETE", "/api/v1/batches/{name}", with(forget_batch)},
            {"GET", "/api/v1/batches/{name}/report", with(report_of)},
            {"GET", "/api/v1/batches/{name}/files/{file}", with(file_of_report), false, Pool::kFiles},
-           {"POST", "/api/v1/batches/{name}/accept", with(accept_solves)}},
-          batches_description()};
+           {"POST", "/api/v1/batches/{name}/accept", with(accept_solves)}}};
 }
 
 }  // namespace weft::app

@@ -11,10 +11,10 @@
 #include "app/jobs/calibrate/history.h"
 #include "app/jobs/sets/response_series.h"
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
-#include "app/server/api/job_body.h"
+#include "app/server/api/job_places.h"
 #include "app/server/api/scan_body.h"
 #include "core/files.h"
+#include "core/toml/field_toml.h"
 
 namespace weft::app {
 namespace {
@@ -42,6 +42,11 @@ Result<Reply> begin_or_go_on(const RigParts& parts, const Call& call) {
   wish.part = *part;
   wish.name = body->value("name", "");
   wish.description = body->value("description", "");
+  if (const auto thing = body->find("thing"); thing != body->end()) {
+    if (!thing->is_object()) return refused_set("thing", "must be an object, as GET forms describes it");
+    if (!wish.description.empty()) return refused_set("thing", "either it or description may be named");
+    wish.description = toml_of(*thing);
+  }
   const std::string from = body->value("from", "");
   if (!from.empty()) wish.from = parts.rig.folder() / from;
   return replied(parts.sets.begin(wish));
@@ -100,7 +105,8 @@ Result<Reply> history_of_rig(const RigParts& parts, const Call&) {
 Result<Reply> accept(const RigParts& parts, const Call& call) {
   const Result<Json> body = command_in(parts, call);
   if (!body) return body.error();
-  const Result<std::filesystem::path> folder = folder_below(parts.rig.folder(), *body, "calibration");
+  const Result<std::filesystem::path> folder =
+      folder_below(parts.rig.folder(), body->value("calibration", Json()), "calibration");
   if (!folder && folder.error().kind == ErrorKind::kUsage) {
     return Error{ErrorKind::kUsage, "no calibration can be accepted so", "calibration", folder.error().why,
                  "see calibrations/accept in openapi.json"};
@@ -136,8 +142,7 @@ Resource calibrations_resource(const RigParts& parts) {
            "GET", "/api/v1/calibrations/work",
            [](const RigParts& all, const Call&) { return json_reply(all.sets.document()); }, Pool::kQuick),
        call("POST", "/api/v1/calibrations/work/photograph", photograph_next, Pool::kQuick),
-       call("POST", "/api/v1/calibrations/work/leave-out", leave_out_or_take_back, Pool::kDevices)},
-      calibrations_description()};
+       call("POST", "/api/v1/calibrations/work/leave-out", leave_out_or_take_back, Pool::kDevices)}};
 }
 
 }  // namespace weft::app

@@ -2,7 +2,6 @@
 #include <string>
 
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/scan_body.h"
 
 namespace weft::app {
@@ -37,8 +36,7 @@ Resource control_resource(const RigParts& parts) {
               parts.controls.release(call.control);
               return json_reply({{"name", parts.controls.holder()}});
             },
-            false, Pool::kQuick}},
-          control_description()};
+            false, Pool::kQuick}}};
 }
 
 }  // namespace weft::app

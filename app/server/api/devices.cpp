@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/frame_tile.h"
 #include "app/server/api/scan_body.h"
 
@@ -177,8 +176,7 @@ Resource devices_resource(const RigParts& parts) {
                Pool::kDisk),
            call("GET", "/api/v1/rig/test-shots/{id}", one_shot, Pool::kPictures),
            call("GET", "/api/v1/rig/test-shots/{id}/picture", picture, Pool::kPictures),
-           call("GET", "/api/v1/rig/test-shots/{id}/tiles/{level}/{tile}", shot_tile, Pool::kTiles)},
-          devices_description()};
+           call("GET", "/api/v1/rig/test-shots/{id}/tiles/{level}/{tile}", shot_tile, Pool::kTiles)}};
 }
 
 }  // namespace weft::app

@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 
 namespace weft::app {
 
@@ -13,7 +12,7 @@ Resource events_resource(const RigParts& parts) {
     if (const auto screen = call.query.find("screen"); screen != call.query.end() && screen->second == "1")
       parts.screens.follow();
   };
-  return {{std::move(stream)}, events_description()};
+  return {{std::move(stream)}};
 }
 
 }  // namespace weft::app

@@ -9,7 +9,6 @@
 #include "app/jobs/export/export.h"
 #include "app/jobs/export/preset_files.h"
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/library_materials.h"
 #include "app/server/api/viewed.h"
 #include "core/files.h"
@@ -151,7 +150,7 @@ void add_routes(std::vector<Route>& routes, const RigParts& parts, const std::st
 }  // namespace
 
 Resource exports_resource(const RigParts& parts) {
-  Resource resource = {{{"GET", "/api/v1/presets", presets}}, exports_description()};
+  Resource resource = {{{"GET", "/api/v1/presets", presets}}};
   add_routes(resource.routes, parts, "/api/v1/sessions/{name}/exports", exports_of_session);
   add_routes(resource.routes, parts, "/api/v1/materials/{name}/builds/{id}/exports", exports_of_build);
   return resource;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/frame_tile.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_choice.h"
@@ -149,8 +148,7 @@ Resource frames_resource(const RigParts& parts) {
            {"GET", "/api/v1/sessions/{name}/frames/{index}/tiles/{level}/{tile}",
             [&parts](const Call& call) { return frame_tile(parts, call); }, false, Pool::kTiles},
            {"POST", "/api/v1/sessions/{name}/frames/{index}/again",
-            [&parts](const Call& call) { return again(parts, call); }}},
-          frames_description()};
+            [&parts](const Call& call) { return again(parts, call); }}}};
 }
 
 }  // namespace weft::app

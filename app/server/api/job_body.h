@@ -1,48 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <string>
-#include <vector>
-
-#include "app/jobs/material/material_place.h"
+#include "app/server/api/job_places.h"
 #include "app/server/jobs/job.h"
 #include "core/json_document.h"
 #include "core/result.h"
 
 namespace weft::app {
 
-/// What jobs may work on: a client sends names and never paths.
-struct JobPlaces {
-  /// The folder of a session by its name. kUsage, kNoInput.
-  std::function<Result<std::filesystem::path>(const std::string& name)> session;
-  std::filesystem::path folder;         ///< of the rig: photographs and calibrations lie below it
-  std::string rig;                      ///< its name
-  std::filesystem::path sessions;       ///< where new ones go
-  std::filesystem::path copy;           ///< of finished sessions; empty: where each session says
-  std::filesystem::path rig_file = {};  ///< empty: there is no rig
-  /// A material of the library by its key. kNoInput.
-  std::function<Result<MaterialPlace>(const std::string& key)> material = {};
-  /// The folder of what was built of one; without an id of the newest build. kNoInput.
-  std::function<Result<std::filesystem::path>(const std::string& key, const std::string& id)> build = {};
-  /// The folder of a session by its name, whether or not it can be read. kUsage, kNoInput.
-  std::function<Result<std::filesystem::path>(const std::string& name)> session_folder = {};
-  /// Folders of the sessions that the words of a search find (session_query.h). kUsage.
-  std::function<Result<std::vector<std::filesystem::path>>(const std::map<std::string, std::string>& asked)>
-      sessions_found = {};
-  std::filesystem::path batches = {};  ///< where plans lie (batch_place.h); empty: nowhere
-};
-
-/// The folder that a field of a body names, below another one where no link leads out of it. kUsage,
-/// kNoInput.
-Result<std::filesystem::path> folder_below(const std::filesystem::path& root, const Json& body,
-                                           const char* field);
-
-/// The body of POST /api/v1/jobs: {"kind", "session" or "input", "output", "from", "request_id", ...} with
-/// the fields of its kind (docs/http.md). All that can be told before the verb runs is: kUsage with the field
-/// and its rule; kNoInput where what it works on is not there; kCannotCreate where its output is.
+/// The body of POST /api/v1/jobs: {"kind", "request_id"} with the fields of its kind (job_kinds.h). All that
+/// can be told before the verb runs is: kUsage with the field and its rule; kNoInput where what it works on
+/// is not there; kCannotCreate where its output is.
 Result<JobSpec> read_job_body(const Json& body, const JobPlaces& places);
 
 }  // namespace weft::app

@@ -4,13 +4,19 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/jobs/calibrate/board_photographs.h"
+#include "app/jobs/calibrate/chart_pictures.h"
+#include "app/jobs/calibrate/sheet_files.h"
+#include "app/jobs/calibrate/walk.h"
 #include "app/server/api/api.h"
 #include "app/server/api/batch_place.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/job_body.h"
+#include "app/server/api/job_kinds.h"
 #include "app/server/api/library_materials.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_query.h"
+#include "core/field_json.h"
+#include "core/files.h"
 #include "core/number.h"
 #include "library/session_name.h"
 
@@ -155,17 +161,24 @@ Route step_route(const RigParts& parts, const char* path, JobStep step) {
 }  // namespace
 
 Resource jobs_resource(const RigParts& parts) {
-  return {{{"GET", "/api/v1/jobs", [&parts](const Call& call) { return list_jobs(parts, call); }},
-           {"POST", "/api/v1/jobs", [&parts](const Call& call) { return add_job(parts, call); }},
-           {"GET", "/api/v1/jobs/{id}", [&parts](const Call& call) { return one_job(parts, call); }},
-           {"DELETE", "/api/v1/jobs/{id}", [&parts](const Call& call) { return forget_job(parts, call); }},
-           {"GET", "/api/v1/jobs/{id}/log", [&parts](const Call& call) { return log_of_job(parts, call); }},
-           {"GET", "/api/v1/jobs/{id}/files/{name}",
-            [&parts](const Call& call) { return file_of_job(parts, call); }, false, Pool::kFiles},
-           step_route(parts, "/api/v1/jobs/{id}/cancel", &JobQueue::cancel),
-           step_route(parts, "/api/v1/jobs/{id}/retry", &JobQueue::retry),
-           step_route(parts, "/api/v1/jobs/{id}/first", &JobQueue::first)},
-          jobs_description()};
+  const Json things = {{"board", schema_of<BoardDescription>()},
+                       {"sheet", schema_of<SheetDescription>()},
+                       {"chart", schema_of<ChartEdition>()}};
+  Reply forms = json_reply({{"jobs", job_forms()}, {"walks", json_of_walks()}, {"things", things}});
+  forms.keeping = Keeping::kAskAgain;
+  forms.tag = sha256_of(forms.body);
+  return {
+      {{"GET", "/api/v1/forms", [forms](const Call&) -> Result<Reply> { return forms; }, false, Pool::kQuick},
+       {"GET", "/api/v1/jobs", [&parts](const Call& call) { return list_jobs(parts, call); }},
+       {"POST", "/api/v1/jobs", [&parts](const Call& call) { return add_job(parts, call); }},
+       {"GET", "/api/v1/jobs/{id}", [&parts](const Call& call) { return one_job(parts, call); }},
+       {"DELETE", "/api/v1/jobs/{id}", [&parts](const Call& call) { return forget_job(parts, call); }},
+       {"GET", "/api/v1/jobs/{id}/log", [&parts](const Call& call) { return log_of_job(parts, call); }},
+       {"GET", "/api/v1/jobs/{id}/files/{name}",
+        [&parts](const Call& call) { return file_of_job(parts, call); }, false, Pool::kFiles},
+       step_route(parts, "/api/v1/jobs/{id}/cancel", &JobQueue::cancel),
+       step_route(parts, "/api/v1/jobs/{id}/retry", &JobQueue::retry),
+       step_route(parts, "/api/v1/jobs/{id}/first", &JobQueue::first)}};
 }
 
 }  // namespace weft::app

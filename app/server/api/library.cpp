@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/scan_body.h"
 
 namespace weft::app {
@@ -58,8 +57,7 @@ Resource library_resource(const RigParts& parts) {
            {"POST", "/api/v1/sessions/{name}/metadata",
             [&parts](const Call& call) { return change_session(parts, call); }},
            step_back(parts, "/api/v1/undo", &LibraryService::undo),
-           step_back(parts, "/api/v1/redo", &LibraryService::redo)},
-          library_description()};
+           step_back(parts, "/api/v1/redo", &LibraryService::redo)}};
 }
 
 }  // namespace weft::app

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/http/error_json.h"
 
@@ -49,8 +48,7 @@ Resource login_resource(const RigParts& parts) {
   return {{{"POST", "/api/v1/login", [&parts](const Call& call) { return login(parts, call); }, true,
             Pool::kQuick},
            {"POST", "/api/v1/logout", [&parts](const Call& call) { return logout(parts, call); }, true,
-            Pool::kQuick}},
-          login_description()};
+            Pool::kQuick}}};
 }
 
 }  // namespace weft::app

@@ -7,7 +7,6 @@
 #include "app/jobs/maps/recipe.h"
 #include "app/jobs/maps/session_sets.h"
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/viewed.h"
 #include "library/session_files.h"
 #include "library/session_name.h"
@@ -132,8 +131,7 @@ Resource maps_resource(const RigParts& parts) {
        {"GET", one, [&parts](const Call& call) { return one_set(parts, call); }},
        {"GET", one + "/pictures/{file}", [&parts](const Call& call) { return picture_of_set(parts, call); },
         false, Pool::kFiles},
-       {"GET", "/api/v1/recipes", recipes, false, Pool::kQuick}},
-      maps_description()};
+       {"GET", "/api/v1/recipes", recipes, false, Pool::kQuick}}};
   for (Route& route : view_routes(parts, one, find_map_set)) resource.routes.push_back(std::move(route));
   return resource;
 }

@@ -5,7 +5,6 @@
 
 #include "app/jobs/material/resolve.h"
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/library_materials.h"
 #include "app/server/api/material_body.h"
 #include "app/server/api/scan_body.h"
@@ -76,8 +75,7 @@ Resource materials_resource(const RigParts& parts) {
                         {"POST", of, new_material},
                         {"GET", of + "/{name}", one_material},
                         {"GET", of + "/{name}/builds", builds},
-                        {"GET", one, [&parts](const Call& call) { return one_build(parts, call); }}},
-                       materials_description()};
+                        {"GET", one, [&parts](const Call& call) { return one_build(parts, call); }}}};
   for (Route& route : view_routes(parts, one, find_built_maps)) resource.routes.push_back(std::move(route));
   return resource;
 }

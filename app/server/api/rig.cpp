@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/session_choice.h"
 
 namespace weft::app {
@@ -32,7 +31,7 @@ Result<Reply> whole_status(const RigParts& parts) {
 }  // namespace
 
 Resource rig_resource(const RigParts& parts) {
-  return {{{"GET", "/api/v1/rig", [&parts](const Call&) { return whole_status(parts); }}}, rig_description()};
+  return {{{"GET", "/api/v1/rig", [&parts](const Call&) { return whole_status(parts); }}}};
 }
 
 }  // namespace weft::app

@@ -8,7 +8,6 @@
 
 #include "app/jobs/last_check.h"
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/scan_bill.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_choice.h"
@@ -126,8 +125,7 @@ Resource scan_resource(const RigParts& parts) {
             [&parts](const Call& call) {
               return after(parts, call, [&](const std::string&) { return parts.keeper.cancel(); });
             },
-            false, Pool::kQuick}},
-          scan_description()};
+            false, Pool::kQuick}}};
 }
 
 }  // namespace weft::app

@@ -16,7 +16,6 @@
 namespace weft::app {
 namespace {
 
-constexpr int kMostDepth = 32;
 constexpr std::size_t kMostFabricBytes = 200;
 constexpr std::array<std::string_view, 18> kFields = {
     "session",      "fabric",    "cloth_height_mm", "metadata",   "exposure_us", "iso",
@@ -137,17 +136,10 @@ void read_plan(Fields& fields, int most_leds, const capture::ScanRequest& rig,
 
 Result<Json> parse_body(std::string_view body) {
   if (body.find_first_not_of(" \t\r\n") == std::string_view::npos) return Json::object();
-  bool too_deep = false;
-  // What nests deeper is not even built: writing it again would need a stack as deep.
-  const auto keep = [&](int depth, Json::parse_event_t, const Json&) {
-    too_deep = too_deep || depth > kMostDepth;
-    return !too_deep;
-  };
-  Json json = Json::parse(body, keep, false);
-  if (too_deep) return refuse("body", fmt::format("nests over {} levels", kMostDepth), "send flat JSON");
-  if (json.is_discarded() || !json.is_object()) {
+  auto [json, why] = parse_json(body);
+  if (!why.empty()) return refuse("body", why, "send one JSON object, as in {\"fabric\": \"satin\"}");
+  if (!json.is_object())
     return refuse("body", "is no JSON object", "send one, as in {\"fabric\": \"satin\"}");
-  }
   return json;
 }
 

@@ -10,7 +10,6 @@
 #include "app/jobs/doctor.h"
 #include "app/server/api/api.h"
 #include "app/server/api/awaited.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/rig/logbook.h"
 #include "core/files.h"
 #include "core/solve_record.h"
@@ -110,8 +109,7 @@ Resource server_resource(const RigParts& parts) {
               if (!rooms) return silent_disk();
               return json_reply(*rooms);
             }},
-           {"GET", "/api/v1/doctor",
-            [&parts, doctor](const Call&) -> Result<Reply> {
+           {"GET", "/api/v1/doctor", [&parts, doctor](const Call&) -> Result<Reply> {
               const RigStatus status = parts.keeper.status();
               const bool is_ours = status.devices_open || !parts.keeper.session().empty();
               const std::optional<Json> found =
@@ -122,8 +120,7 @@ Resource server_resource(const RigParts& parts) {
               return json_reply({{"rig", parts.rig.name},
                                  {"leaves_alone", is_ours},
                                  {"findings", {json_of(fault_of("disk", silent_disk()))}}});
-            }}},
-          server_description()};
+            }}}};
 }
 
 }  // namespace weft::app

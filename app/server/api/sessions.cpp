@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/session_choice.h"
 #include "app/server/api/session_query.h"
 #include "library/current.h"
@@ -132,8 +131,7 @@ Resource sessions_resource(const RigParts& parts) {
   return {
       {{"GET", "/api/v1/sessions", [&parts](const Call& call) { return find_sessions(parts, call); }},
        {"GET", "/api/v1/sessions/{name}", [&parts](const Call& call) { return one_session(parts, call); }},
-       {"GET", "/api/v1/next-name", [&parts](const Call& call) { return next_name(parts, call); }}},
-      sessions_description()};
+       {"GET", "/api/v1/next-name", [&parts](const Call& call) { return next_name(parts, call); }}}};
 }
 
 }  // namespace weft::app

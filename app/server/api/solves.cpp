@@ -5,7 +5,6 @@
 
 #include "app/jobs/compare.h"
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 #include "app/server/api/viewed.h"
 #include "core/files.h"
 #include "core/solve.h"
@@ -111,8 +110,7 @@ Resource solves_resource(const RigParts& parts) {
        {"GET", one, [&parts](const Call& call) { return one_solve(parts, call); }},
        {"GET", one + "/report", [&parts](const Call& call) { return report_of_solve(parts, call); }},
        {"GET", "/api/v1/compare", [&parts](const Call& call) { return compare(parts, call); }, false,
-        Pool::kTiles}},
-      solves_description()};
+        Pool::kTiles}}};
   for (Route& route : view_routes(parts, one, find_solve_maps)) resource.routes.push_back(std::move(route));
   return resource;
 }

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "app/server/api/api.h"
-#include "app/server/api/descriptions.h"
 
 namespace weft::app {
 namespace {
@@ -70,8 +69,7 @@ Resource virtual_rig_resource(const RigParts& parts) {
   return {{{"GET", "/api/v1/rig/virtual", [&parts](const Call& call) { return how_it_is(parts, call); },
             false, Pool::kDevices},
            {"POST", "/api/v1/rig/virtual", [&parts](const Call& call) { return obey(parts, call); }, false,
-            Pool::kDevices}},
-          virtual_rig_description()};
+            Pool::kDevices}}};
 }
 
 }  // namespace weft::app

@@ -10,6 +10,7 @@ import {Frame} from './frame/frame';
 import {LazyScreen} from './frame/lazy_screen';
 import {followAddress, place} from './state/address';
 import {isDark} from './state/dark';
+import {askForms} from './state/forms';
 import {followKeys} from './state/keys';
 import {followRig} from './state/rig';
 import {followRunningJob} from './state/running_job';
@@ -18,7 +19,7 @@ type Entry = {is: 'coming'} | {is: 'refused'; error: ApiError; token: string} | 
 const entry = signal<Entry>({is: 'coming'});
 
 async function begin(): Promise<void> {
-  await followRig();
+  await Promise.all([followRig(), askForms()]);
   followRunningJob();
   follow();
   entry.value = {is: 'in'};

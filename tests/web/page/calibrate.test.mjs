@@ -18,11 +18,21 @@ before(async () => { browser = await launch(); });
 after(async () => { await browser?.close(); });
 
 function described(rig, thing) {
-  return fs.readFileSync(path.join(rig.folder, 'things', `${thing}.toml`), 'utf8');
+  return path.join(rig.folder, 'things', `${thing}.toml`);
 }
 
-async function begin(page, description) {
-  if (description) await page.getByLabel(/^Text of/).fill(description);
+/** The fields of a board as a person types them. */
+async function fillBoard(page, file) {
+  for (const [, name, value] of fs.readFileSync(file, 'utf8').matchAll(/^(\w+) *= *"?([^"\n#]+?)"? *(?:#.*)?$/gm)) {
+    if (name === 'kind') await page.getByLabel('Kind').selectOption(value);
+    else await page.locator(`#board-${name}`).fill(value);
+  }
+}
+
+/** What lies there is said in the form of a board, and by the file of any other thing. */
+async function begin(page, file) {
+  if (file?.endsWith('board.toml')) await fillBoard(page, file);
+  else if (file) await page.getByLabel(/^Or its file/).setInputFiles(file);
   await page.getByRole('button', {name: 'Begin, or go on'}).click();
   await page.locator('.set').waitFor();
 }

@@ -581,8 +581,10 @@ export interface paths {
                         part: "board" | "response" | "trap" | "sheet" | "chart" | "check" | "moved";
                         /** @description Of its folder in sets/ beside the rig file; absent: the part's */
                         name?: string;
-                        /** @description Text of board.toml, sheet.toml or chart.toml (docs/calibration.md); needed once */
+                        /** @description Text of board.toml, sheet.toml or chart.toml (docs/calibration.md); it or thing is needed once */
                         description?: string;
+                        /** @description The same by its fields, as GET forms has them in things */
+                        thing?: Record<string, unknown>;
                         /** @description Folder of the calibration that was known before, below that of the rig file or an absolute one of its machine; absent: the rig's */
                         from?: string;
                     };
@@ -2112,6 +2114,46 @@ export interface paths {
                         "application/json": components["schemas"]["ErrorDocument"];
                     };
                 };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/forms": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What can be asked for: each kind of job with the schema of its body, and the stages of a calibration */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path?: never;
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description The same for as long as this version runs */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["Forms"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                421: components["responses"]["ForeignHost"];
             };
         };
         put?: never;
@@ -5987,155 +6029,53 @@ export interface components {
             warnings: string[];
             histogram: components["schemas"]["Histogram"] | null;
         };
-        JobRequest: {
-            /**
-             * @description batch_plan: many sessions priced by a sample of them (weft batch plan); batch_run: a plan is solved as far as it is not done, and its report written (weft batch run --merge); price: seconds and degrees of every level (weft solve --explain); torture: the session torture, of pixels that are hard to solve, and its solve with the layer condition (weft torture); rig_plan: what one more LED, one moved or polarisers would tell of a cloth (weft rig plan), with the drawing files/plan.svg; maps, finish: a set of maps (weft maps, weft finish); export: files by presets (weft export); export_price: what they would hold and lose (weft export --explain); material: a material of the library is built (weft material build); check: weft calibrate check
-             * @enum {string}
-             */
-            kind: "solve" | "price" | "rectify" | "copy" | "torture" | "rig_plan" | "maps" | "finish" | "export" | "export_price" | "material" | "check" | "calibrate_camera" | "calibrate_response" | "calibrate_color" | "calibrate_lights" | "calibrate_grey" | "calibrate_patches" | "calibrate_update" | "batch_plan" | "batch_run";
-            /** @description Name, without .weft; of all but check by input and calibrate_camera, _response, _color, _lights */
-            session?: string;
-            /** @description Folder below that of the rig file; of calibrate_camera, _response, _color, _lights, and of check */
-            input?: string;
-            /** @description Folder below that of the rig file, which must not exist; of calibrate_*, and of check. Without it calibrate_lights and check only say what comes out */
-            output?: string;
-            /** @description A calibration: folder below that of the rig file; of calibrate_*, and of check */
-            from?: string;
-            /** @description Of solve: a calibration in place of the session's; of batch_plan: in place of those of the sessions of its rig; folder below that of the rig file */
-            calibration?: string;
-            /** @description Of check and calibrate_update, in place of session: a set of that part, folder below that of the rig file */
-            moved?: string;
-            /** @description Of calibrate_response: a set of that part, folder below that of the rig file */
-            trap?: string;
-            /**
-             * @description Of solve and batch_plan: a level
-             * @enum {string}
-             */
-            quality?: "preview" | "fast" | "standard" | "robust" | "reference";
-            /** @description Of solve: a method in place of a level; of calibrate_lights: physical, per-pixel or seed */
-            method?: string;
-            /** @description Of solve: the best level that takes at most so long; of batch_plan: seconds for all of them, spent where they buy most */
-            within_s?: number;
-            /** @description Of solve, and of each session of batch_plan: the cheapest level that errs by at most so much */
-            to_deg?: number;
-            /** @description Of rectify, maps, finish: id; absent: the current one */
-            solve?: string;
-            /** @description Of rectify, maps, finish */
-            mm_per_pixel?: number;
-            /** @description Of rectify */
-            turn_deg?: number;
-            /** @description Of calibrate_camera: charuco or checkerboard */
-            board?: string;
-            /** @description Of calibrate_camera */
-            squares_x?: number;
-            /** @description Of calibrate_camera */
-            squares_y?: number;
-            /** @description Of calibrate_camera */
-            square_mm?: number;
-            /** @description Of calibrate_camera */
-            thickness_mm?: number;
-            /** @description Of calibrate_lights */
-            tape_sigma_mm?: number;
-            /** @description Of calibrate_lights */
-            flatness_deg?: number;
-            /** @description Of calibrate_lights */
-            flicker_percent?: number;
-            /** @description Of calibrate_camera: side of a marker over that of a square, of ChArUco */
-            marker_share?: number;
-            /** @description Of calibrate_camera: as OpenCV names it, DICT_5X5_100, of ChArUco */
-            dictionary?: string;
-            /** @description Of calibrate_camera: dictionary of the tags on the table */
-            tags?: string;
-            /** @description Of calibrate_camera: photographs with wider edges are left out, pixels */
-            most_blur_px?: number;
-            /** @description Of calibrate_camera: fewer usable photographs are refused */
-            least_boards?: number;
-            /** @description Of calibrate_camera: boards too alike are refused: predicted sigma of the focal length, percent */
-            most_focal_percent?: number;
-            /** @description Of calibrate_color: outer corners of patches 1, 6, 24, 19 in pixels: x, y and so on; absent: found by itself */
-            corners_px?: number[];
-            /** @description Of calibrate_color: affine, cubic, affine in xyY in place of a 3 x 3 matrix */
-            curve?: boolean;
-            /** @description Of calibrate_lights: take the paper to follow Lambert's law */
-            lambertian?: boolean;
-            /** @description Of calibrate_lights: write the calibration although readings and model contradict each other */
-            accept_misfit?: boolean;
-            /** @description Of calibrate_grey: scale.toml, below the rig file's folder; absent: beside the session */
-            scale?: string;
-            /** @description Of calibrate_patches: patches.toml, below the rig file's folder; absent: beside the session */
-            patches?: string;
-            /** @description Of calibrate_patches, calibrate_update, check: the paper reflects 1 - delta (1 - cosine) of Lambert's law */
-            paper_delta?: number;
-            /** @description Of calibrate_update, check: sheet.toml of the sheet in the pictures, below the rig file's folder */
-            sheet?: string;
-            /** @description Of check: side of the squares that are compared, even, pixels */
-            square_px?: number;
-            /** @description Of check: of flat sheets, rms degrees */
-            flat_limit_deg?: number;
-            /** @description Of check: of tilted sheets, rms degrees */
-            tilted_limit_deg?: number;
-            /** @description Of check: of the slope gain, off 1 */
-            gain_limit?: number;
-            /** @description Of check: of a LED that is lit once more, relative */
-            drift_limit?: number;
-            /** @description Of maps: which to derive; absent: all */
-            maps?: string[];
-            /** @description Of maps, finish: on a grid four times as coarse; earlier previews of the session go */
-            preview?: boolean;
-            /** @description Of rectify, maps, finish, export, export_price: a preview will do, of half the size and without masks */
-            draft?: boolean;
-            /** @description Of maps, finish: one of those that GET recipes names, in place of steps */
-            recipe?: string;
-            /** @description Of maps, finish: a recipe; what it may say is in GET recipes */
-            steps?: {
-                steps: components["schemas"]["RecipeStep"][];
+        Forms: {
+            jobs: components["schemas"]["JobForm"][];
+            walks: {
+                /** @description Of a new rig */
+                all: components["schemas"]["WalkStage"][];
+                /** @description After a knock */
+                refresh: components["schemas"]["WalkStage"][];
             };
-            /**
-             * @description Of rig_plan; default satin, where there is no roughness
-             * @enum {string}
-             */
-            cloth?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
-            /** @description Of rig_plan, in place of a cloth: alpha of a GGX lobe */
-            roughness?: number;
-            /** @description Of rig_plan by roughness: strength of that lobe; default 0.04 */
-            f0?: number;
-            /** @description Of rig_plan: default the cloth's own, else 0.3 */
-            albedo?: number;
-            /** @description Of rig_plan: mean slope of the cloth, degrees; default 20 */
-            relief_deg?: number;
-            /**
-             * @description Of rig_plan: what the best place is best for; default all
-             * @enum {string}
-             */
-            aim?: "all" | "normal" | "alpha" | "f0";
-            /** @description Of rig_plan: seconds a shot; default 4 */
-            pace?: number;
-            /** @description Of export, export_price: names */
-            presets?: string[];
-            /** @description Of export, export_price: id of a set of maps of the session; absent: the newest of its current solve */
-            set?: string;
-            /** @description Of material, and of export and export_price in place of session: as GET materials has its key */
-            material?: string;
-            /** @description Of batch_plan: that of the batch; absent: the next number. Of export, export_price: what {name} in names of files stands for; absent: that of the session */
-            name?: string;
-            /** @description Of batch_plan: names, at most 2000; in the job their number */
-            sessions?: string[];
-            /** @description Of batch_plan, in place of sessions: the words of GET sessions but limit and after; all that is found is planned */
-            find?: {
-                [key: string]: string;
+            /** @description JSON Schema of what calibrations/work is told of each */
+            things: {
+                board: Record<string, unknown>;
+                sheet: Record<string, unknown>;
+                chart: Record<string, unknown>;
             };
-            /** @description Of batch_plan: sessions whose maps would turn by less are left out */
-            least_change_deg?: number;
-            /** @description Of batch_plan: sessions that are measured; default 50 */
-            sample?: number;
-            /** @description Of batch_run: as GET batches names it */
-            batch?: string;
-            /** @description Of batch_run: sessions at a time, which share the threads; default 1 */
-            at_once?: number;
-            /** @description Of batch_run: try sessions again that failed before */
-            retry_failed?: boolean;
-            /** @description The same again is the same job */
-            request_id?: string;
+        };
+        JobForm: {
+            kind: string;
+            /** @description For people */
+            title: string;
+            /** @description JSON Schema of its body */
+            schema: Record<string, unknown>;
+        };
+        WalkStage: {
+            /** @description What its folder ends with */
+            result: string;
+            /**
+             * @description Of its photographs
+             * @enum {string}
+             */
+            part: "board" | "response" | "trap" | "sheet" | "chart" | "check" | "moved";
+            title: string;
+            about: string;
+            /**
+             * @description It reads the photographs
+             * @enum {string}
+             */
+            job: "calibrate_camera" | "calibrate_response" | "calibrate_lights" | "calibrate_color" | "calibrate_update" | "check";
+            /**
+             * @description What must be described before it can be found in a photograph
+             * @enum {string|null}
+             */
+            thing: "board" | "sheet" | "chart" | null;
+            is_optional: boolean;
+            /** @description Its photographs are read by the stage after it; a walk comes by it only where a person chooses it */
+            is_aside: boolean;
+            /** @description The stage before it has taken its photographs */
+            is_photographed: boolean;
         };
         Job: {
             id: string;
@@ -6772,6 +6712,845 @@ export interface components {
                 example: string;
             }[];
         };
+        /** Solve */
+        SolveJob: {
+            /** @enum {string} */
+            kind: "solve";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Session folder, NAME.weft: its name */
+            session: string;
+            /**
+             * @description Level: preview (half size, no masks), fast (least squares without shadows), standard (weighted, misfits rejected; default), robust (for highlights), reference (shadows and light between yarns taken out where the cloth needs it)
+             * @enum {string}
+             */
+            quality?: "preview" | "fast" | "standard" | "robust" | "reference";
+            /**
+             * @description Method for comparison: seed (four systems a pixel by SVD, after demosaicing), least-squares (every valid reading), wls (weighted), l1 (least absolute residuals), sbl (sparse errors), lts (least trimmed squares)
+             * @enum {string}
+             */
+            method?: "seed" | "least-squares" | "wls" | "l1" | "sbl" | "lts";
+            /** @description Choose the best level that takes so many seconds, by --explain */
+            within_s?: number;
+            /** @description Choose the cheapest level expected to be so many degrees off at most */
+            to_deg?: number;
+            /** @description What --explain said of this solve, SECONDS,DEGREES,SHARE: solve.json keeps it beside what is taken */
+            foretold?: number[];
+            /** @description LEDs or photographs to solve from, numbered from 1: 1,4,7; default all */
+            lights?: number[];
+            /** @description Calibration folder; default the session's own; below the rig file's folder */
+            calibration?: string;
+            /** @description Session of the same cloth lying tilted (weft scan --tilt), in which robust and reference seek its lobe too: its name */
+            second_pose?: string;
+            /** @description Solve although the last check of this rig's calibration did not pass before the scan: the reason, which is kept */
+            accept_moved?: string;
+            /**
+             * @description Of EXR files: none, zip, piz
+             * @default none
+             * @enum {string}
+             */
+            compress?: "none" | "zip" | "piz";
+            /**
+             * @description Columns a tile (changes no byte of the result)
+             * @default 8192
+             */
+            tile_width?: number;
+            /**
+             * @description Rows a tile (changes no byte of the result)
+             * @default 4
+             */
+            tile_height?: number;
+            /**
+             * @description False: Write no pictures
+             * @default true
+             */
+            previews?: boolean;
+            /**
+             * @description False: Leave the blur of the lens as it is
+             * @default true
+             */
+            deblur?: boolean;
+            /**
+             * @description Also write condition.exr: the logarithm of the condition number of the lights that each pixel was solved from
+             * @default false
+             */
+            condition?: boolean;
+        } & (unknown & unknown & unknown & unknown & unknown & unknown & unknown & {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "solve";
+        });
+        /** Price of each level */
+        PriceJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "price";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Session folder, NAME.weft: its name */
+            session: string;
+            /** @description Choose the best level that takes so many seconds, by --explain */
+            within_s?: number;
+            /** @description Choose the cheapest level expected to be so many degrees off at most */
+            to_deg?: number;
+            /** @description LEDs or photographs to solve from, numbered from 1: 1,4,7; default all */
+            lights?: number[];
+            /** @description Calibration folder; default the session's own; below the rig file's folder */
+            calibration?: string;
+            /** @description Session of the same cloth lying tilted (weft scan --tilt), in which robust and reference seek its lobe too: its name */
+            second_pose?: string;
+            /** @description Solve although the last check of this rig's calibration did not pass before the scan: the reason, which is kept */
+            accept_moved?: string;
+        };
+        /** Rectified maps */
+        RectifyJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "rectify";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Session folder, NAME.weft: its name */
+            session: string;
+            /** @description Id of the solve; default the session's current one */
+            solve?: string;
+            /**
+             * @description A preview will do, of half the size and without masks
+             * @default false
+             */
+            draft?: boolean;
+            /** @description Calibration folder; default the session's own; below the rig file's folder */
+            calibration?: string;
+            /** @description Of the grid; default what the camera sees */
+            mm_per_pixel?: number;
+            /**
+             * @description Degrees that the grid is turned, counterclockwise from above
+             * @default 0
+             */
+            turn_deg?: number;
+            /**
+             * @description Of EXR files: none, zip, piz
+             * @default none
+             * @enum {string}
+             */
+            compress?: "none" | "zip" | "piz";
+        };
+        /** Second copy */
+        CopyJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "copy";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Session folder, NAME.weft: its name */
+            session: string;
+        };
+        /** Torture scene */
+        TortureJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "torture";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+        };
+        /** Which light to add */
+        RigPlanJob: {
+            /** @enum {string} */
+            kind: "rig_plan";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /**
+             * @description What is to be scanned
+             * @default satin
+             * @enum {string}
+             */
+            cloth?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
+            /** @description reflectance.json of a solve: its first lobe; below the rig file's folder */
+            reflectance?: string;
+            /** @description Alpha of a GGX lobe */
+            roughness?: number;
+            /** @description Strength of that lobe; default 0.04 */
+            f0?: number;
+            /** @description Of the cloth; default its own, else 0.3 */
+            albedo?: number;
+            /** @description Mean slope of the cloth, degrees; default 20 */
+            relief_deg?: number;
+            /**
+             * @description What the best place is best for: all, normal, alpha, f0
+             * @default all
+             * @enum {string}
+             */
+            aim?: "all" | "normal" | "alpha" | "f0";
+            /**
+             * @description Of a scan, seconds a shot
+             * @default 4
+             */
+            pace?: number;
+        } & (unknown & unknown & unknown & {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "rig_plan";
+        });
+        /** Maps */
+        MapsJob: {
+            /** @enum {string} */
+            kind: "maps";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Session folder, NAME.weft: its name */
+            session: string;
+            /** @description Id of the solve; default the session's current one */
+            solve?: string;
+            /**
+             * @description A preview will do, of half the size and without masks
+             * @default false
+             */
+            draft?: boolean;
+            /** @description Calibration folder; default the session's own; below the rig file's folder */
+            calibration?: string;
+            /** @description Of the grid; default what the camera sees */
+            mm_per_pixel?: number;
+            /** @description Recipe as JSON: {"steps": [{"do": "tile"}]} */
+            steps?: Record<string, unknown>;
+            /**
+             * @description Recipe: a TOML file, the maps.json of other maps, or flat, tile, detail (docs/finishing.md)
+             * @enum {string}
+             */
+            recipe?: "flat" | "tile" | "detail";
+            /**
+             * @description On a grid four times as coarse; earlier previews go
+             * @default false
+             */
+            preview?: boolean;
+            /**
+             * @description Of EXR files: none, zip, piz
+             * @default none
+             * @enum {string}
+             */
+            compress?: "none" | "zip" | "piz";
+            /** @description Which to derive, by commas; default all: height, millimetres towards the camera; curl, how far slopes are from those of any surface; occlusion, share of the sky that a point sees, bounces with it, and the bent normal; cavity, 0 deep, 0.5 flat, 1 high, within --cavity; roughness, alpha and f0 of the lobe, measured or that of --cloth; gloss, the lobe on the scales of other engines; mips, normals and roughness of coarser levels, as bright as the finest; detail, a layer for other materials: slopes of mean 0, albedo over its mean; opacity, 0 a hole, 1 cloth: by the light below and --bare, else the holes that the solver saw */
+            maps?: ("height" | "curl" | "occlusion" | "cavity" | "roughness" | "gloss" | "mips" | "detail" | "opacity")[];
+            /** @description Session of the table without cloth, photographed by the light below at the same exposure: its name */
+            bare?: string;
+            /** @description Albedo R,G,B of the table that shows through holes, to be taken out of their rims */
+            table?: number[];
+            /**
+             * @description How slopes are integrated: tiled, direct, multigrid, seed
+             * @default tiled
+             * @enum {string}
+             */
+            height?: "tiled" | "direct" | "multigrid" | "seed";
+            /**
+             * @description Height: each pixel by one over its variance
+             * @default false
+             */
+            weigh?: boolean;
+            /**
+             * @description Radius that a cavity is seen against, mm
+             * @default 2
+             */
+            cavity_mm?: number;
+            /**
+             * @description Of the occlusion's lines, 4 to 64
+             * @default 8
+             */
+            directions?: number;
+            /**
+             * @description Whose lobe is typed where the photographs tell none
+             * @default cotton
+             * @enum {string}
+             */
+            cloth?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
+            /** @description Rms of openness that is good enough: chooses --directions */
+            to?: number;
+            /** @description Seconds that occlusion may take: chooses --directions */
+            within_s?: number;
+        } & (unknown & unknown & unknown & unknown & {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "maps";
+        });
+        /** Price of maps */
+        MapsPriceJob: {
+            /** @enum {string} */
+            kind: "maps_price";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Session folder, NAME.weft: its name */
+            session: string;
+            /** @description Id of the solve; default the session's current one */
+            solve?: string;
+            /**
+             * @description A preview will do, of half the size and without masks
+             * @default false
+             */
+            draft?: boolean;
+            /** @description Calibration folder; default the session's own; below the rig file's folder */
+            calibration?: string;
+            /** @description Of the grid; default what the camera sees */
+            mm_per_pixel?: number;
+            /** @description Recipe as JSON: {"steps": [{"do": "tile"}]} */
+            steps?: Record<string, unknown>;
+            /**
+             * @description Recipe: a TOML file, the maps.json of other maps, or flat, tile, detail (docs/finishing.md)
+             * @enum {string}
+             */
+            recipe?: "flat" | "tile" | "detail";
+            /**
+             * @description On a grid four times as coarse; earlier previews go
+             * @default false
+             */
+            preview?: boolean;
+            /**
+             * @description Of EXR files: none, zip, piz
+             * @default none
+             * @enum {string}
+             */
+            compress?: "none" | "zip" | "piz";
+            /** @description Which to derive, by commas; default all: height, millimetres towards the camera; curl, how far slopes are from those of any surface; occlusion, share of the sky that a point sees, bounces with it, and the bent normal; cavity, 0 deep, 0.5 flat, 1 high, within --cavity; roughness, alpha and f0 of the lobe, measured or that of --cloth; gloss, the lobe on the scales of other engines; mips, normals and roughness of coarser levels, as bright as the finest; detail, a layer for other materials: slopes of mean 0, albedo over its mean; opacity, 0 a hole, 1 cloth: by the light below and --bare, else the holes that the solver saw */
+            maps?: ("height" | "curl" | "occlusion" | "cavity" | "roughness" | "gloss" | "mips" | "detail" | "opacity")[];
+            /** @description Session of the table without cloth, photographed by the light below at the same exposure: its name */
+            bare?: string;
+            /** @description Albedo R,G,B of the table that shows through holes, to be taken out of their rims */
+            table?: number[];
+            /**
+             * @description How slopes are integrated: tiled, direct, multigrid, seed
+             * @default tiled
+             * @enum {string}
+             */
+            height?: "tiled" | "direct" | "multigrid" | "seed";
+            /**
+             * @description Height: each pixel by one over its variance
+             * @default false
+             */
+            weigh?: boolean;
+            /**
+             * @description Radius that a cavity is seen against, mm
+             * @default 2
+             */
+            cavity_mm?: number;
+            /**
+             * @description Of the occlusion's lines, 4 to 64
+             * @default 8
+             */
+            directions?: number;
+            /**
+             * @description Whose lobe is typed where the photographs tell none
+             * @default cotton
+             * @enum {string}
+             */
+            cloth?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
+            /** @description Rms of openness that is good enough: chooses --directions */
+            to?: number;
+            /** @description Seconds that occlusion may take: chooses --directions */
+            within_s?: number;
+        } & (unknown & unknown & unknown & unknown & {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "maps_price";
+        });
+        /** Finished maps */
+        FinishJob: {
+            /** @enum {string} */
+            kind: "finish";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Session folder, NAME.weft: its name */
+            session: string;
+            /** @description Id of the solve; default the session's current one */
+            solve?: string;
+            /**
+             * @description A preview will do, of half the size and without masks
+             * @default false
+             */
+            draft?: boolean;
+            /** @description Calibration folder; default the session's own; below the rig file's folder */
+            calibration?: string;
+            /** @description Of the grid; default what the camera sees */
+            mm_per_pixel?: number;
+            /** @description Recipe as JSON: {"steps": [{"do": "tile"}]} */
+            steps?: Record<string, unknown>;
+            /**
+             * @description Recipe: a TOML file, the maps.json of other maps, or flat, tile, detail (docs/finishing.md)
+             * @enum {string}
+             */
+            recipe?: "flat" | "tile" | "detail";
+            /**
+             * @description On a grid four times as coarse; earlier previews go
+             * @default false
+             */
+            preview?: boolean;
+            /**
+             * @description Of EXR files: none, zip, piz
+             * @default none
+             * @enum {string}
+             */
+            compress?: "none" | "zip" | "piz";
+        } & (unknown & {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "finish";
+        });
+        /** Export */
+        ExportJob: {
+            /** @enum {string} */
+            kind: "export";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Whose maps: its name */
+            session?: string;
+            /** @description In place of a session a built material, by its key in GET materials */
+            material?: string;
+            /** @description Id of a set of maps, default the newest of the session's current solve; of a material that of what was built of it */
+            set?: string;
+            /** @description Which files: names of --list, or files that end in .toml (docs/exports.md), by commas */
+            presets?: string[];
+            /**
+             * @description Maps of a preview will do, of half the size and without masks
+             * @default false
+             */
+            draft?: boolean;
+            /** @description Of the cloth, in file names; default as it is called */
+            name?: string;
+            /** @description Pixels of the longer side; default as many as there are */
+            size_px?: number;
+            /**
+             * @description DDS files with headers of DX10 alone, which say sRGB
+             * @default false
+             */
+            dx10?: boolean;
+            /** @description Degrees that normals may lose in the mean, as 0.1 or 0.1deg: chooses their bits */
+            to_deg?: number;
+        } & ((unknown | unknown) & unknown & {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "export";
+        });
+        /** Price of an export */
+        ExportPriceJob: {
+            /** @enum {string} */
+            kind: "export_price";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Whose maps: its name */
+            session?: string;
+            /** @description In place of a session a built material, by its key in GET materials */
+            material?: string;
+            /** @description Id of a set of maps, default the newest of the session's current solve; of a material that of what was built of it */
+            set?: string;
+            /** @description Which files: names of --list, or files that end in .toml (docs/exports.md), by commas */
+            presets?: string[];
+            /**
+             * @description Maps of a preview will do, of half the size and without masks
+             * @default false
+             */
+            draft?: boolean;
+            /** @description Of the cloth, in file names; default as it is called */
+            name?: string;
+            /** @description Pixels of the longer side; default as many as there are */
+            size_px?: number;
+            /**
+             * @description DDS files with headers of DX10 alone, which say sRGB
+             * @default false
+             */
+            dx10?: boolean;
+            /** @description Degrees that normals may lose in the mean, as 0.1 or 0.1deg: chooses their bits */
+            to_deg?: number;
+        } & ((unknown | unknown) & unknown & {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "export_price";
+        });
+        /** Built material */
+        MaterialJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "material";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description As GET materials has its key */
+            material: string;
+            /**
+             * @description Of EXR files: none, zip, piz
+             * @default none
+             * @enum {string}
+             */
+            compress?: "none" | "zip" | "piz";
+            /**
+             * @description False: No preview.png
+             * @default true
+             */
+            pictures?: boolean;
+        };
+        /** Check of the calibration */
+        CheckJob: {
+            /** @enum {string} */
+            kind: "check";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Session of a sheet, or a folder of sessions; below the rig file's folder */
+            input?: string;
+            /** @description Any scan that shows tags, white patches or the sheet; or a folder of scans of the sheet in several poses (weft capture moved): its name */
+            session?: string;
+            /** @description In its place a set of photographs: folder below the rig file's */
+            moved?: string;
+            /** @description The calibration in question; default each session's own; below the rig file's folder */
+            from?: string;
+            /** @description sheet.toml of the sheet in the pictures; default that beside them, with --session no sheet; below the rig file's folder */
+            sheet?: string;
+            /** @description The paper reflects 1 - delta (1 - cosine) of Lambert's law; default as the lights' report has it */
+            paper_delta?: number;
+            /** @description Folder for result and report; default nothing is written; below the rig file's folder */
+            output?: string;
+            /**
+             * @description Side of the squares that are compared, pixels
+             * @default 32
+             */
+            square_px?: number;
+            /**
+             * @description Of flat sheets, rms degrees
+             * @default 0.15
+             */
+            flat_limit_deg?: number;
+            /**
+             * @description Of tilted sheets, rms degrees
+             * @default 0.35
+             */
+            tilted_limit_deg?: number;
+            /**
+             * @description Of the slope gain, off 1
+             * @default 0.01
+             */
+            gain_limit?: number;
+            /**
+             * @description Of a LED that is lit once more, relative
+             * @default 0.01
+             */
+            drift_limit?: number;
+        } & (unknown & unknown & (unknown | unknown | unknown) & {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "check";
+        });
+        /** Lens and pose */
+        CalibrateCameraJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "calibrate_camera";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Folder of photographs of one board in many poses; those named table... show it flat on the table; below the rig file's folder */
+            input: string;
+            /** @description Calibration whose other parts are kept; it is never changed; below the rig file's folder */
+            from?: string;
+            /** @description Folder of the new calibration, which must not exist; below the rig file's folder */
+            output: string;
+            /**
+             * @description What is printed; default that of board.toml
+             * @enum {string}
+             */
+            board?: "charuco" | "checkerboard";
+            /** @description Squares a row */
+            squares_x?: number;
+            /** @description Squares a column */
+            squares_y?: number;
+            /** @description Side of a square, mm */
+            square_mm?: number;
+            /** @description ChArUco: side of a marker over that of a square */
+            marker_share?: number;
+            /** @description ChArUco: as OpenCV names it, DICT_5X5_100 */
+            dictionary?: string;
+            /** @description Of the board: the table is so far below its print */
+            thickness_mm?: number;
+            /**
+             * @description Dictionary of the tags on the table
+             * @default DICT_APRILTAG_36h11
+             */
+            tags?: string;
+            /**
+             * @description Photographs with wider edges are left out, pixels
+             * @default 5
+             */
+            most_blur_px?: number;
+            /**
+             * @description Fewer usable photographs are refused
+             * @default 5
+             */
+            least_boards?: number;
+            /**
+             * @description Boards too alike are refused: predicted sigma of the focal length, percent
+             * @default 0.3
+             */
+            most_focal_percent?: number;
+        };
+        /** Sensor */
+        CalibrateResponseJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "calibrate_response";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Folder with dark/, led01/, led02/, led01+led02/, scale/ of raw frames of a still scene; below the rig file's folder */
+            input: string;
+            /** @description Calibration whose other parts are kept; it is never changed; below the rig file's folder */
+            from?: string;
+            /** @description Folder of the new calibration, which must not exist; below the rig file's folder */
+            output: string;
+            /** @description Set of a black trap (weft capture trap): the lens's veil; default trap/ of input; below the rig file's folder */
+            trap?: string;
+        };
+        /** Colour */
+        CalibrateColorJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "calibrate_color";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Photograph or session of the chart, or a folder of them; below the rig file's folder */
+            input: string;
+            /** @description Calibration whose other parts are kept; it is never changed; below the rig file's folder */
+            from?: string;
+            /** @description Folder of the new calibration, which must not exist; below the rig file's folder */
+            output: string;
+            /** @description Outer corners of patches 1, 6, 24, 19 in pixels: x,y,x,y,x,y,x,y; default: found by itself */
+            corners_px?: number[];
+            /**
+             * @description Affine, cubic, affine in xyY in place of a 3 x 3 matrix
+             * @default false
+             */
+            curve?: boolean;
+        };
+        /** Lights */
+        CalibrateLightsJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "calibrate_lights";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Folder of sessions (*.weft) of a sheet with tags, sheet.toml and, where measured anew, rig.toml; below the rig file's folder */
+            input: string;
+            /** @description Calibration whose other parts are kept; it is never changed; below the rig file's folder */
+            from?: string;
+            /** @description Folder of the new calibration, which must not exist; default none: only says what comes out; below the rig file's folder */
+            output?: string;
+            /**
+             * @description physical (a model of each LED), per-pixel (directions cell by cell), seed (the iteration of the paper that this scanner follows, on one flat sheet)
+             * @default physical
+             * @enum {string}
+             */
+            method?: "physical" | "per-pixel" | "seed";
+            /**
+             * @description How well positions were measured, mm an axis
+             * @default 10
+             */
+            tape_sigma_mm?: number;
+            /**
+             * @description Rms waviness of the sheet, degrees
+             * @default 0.05
+             */
+            flatness_deg?: number;
+            /**
+             * @description Flicker of LEDs from shot to shot, percent, where sheets do not tell
+             * @default 0.3
+             */
+            flicker_percent?: number;
+            /**
+             * @description Take the paper to follow Lambert's law
+             * @default false
+             */
+            lambertian?: boolean;
+            /**
+             * @description Write the calibration although readings and model contradict each other
+             * @default false
+             */
+            accept_misfit?: boolean;
+        };
+        /** Grey scale */
+        CalibrateGreyJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "calibrate_grey";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description A scan of the scale, flat on the table: its name */
+            session: string;
+            /** @description scale.toml: where it lies; default beside the session; below the rig file's folder */
+            scale?: string;
+            /** @description The calibration to change; default the session's own; below the rig file's folder */
+            from?: string;
+            /** @description Folder of the new calibration, which must not exist; below the rig file's folder */
+            output: string;
+        };
+        /** White patches */
+        CalibratePatchesJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "calibrate_patches";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description A scan of the table while the calibration is fresh: its name */
+            session: string;
+            /** @description patches.toml: where they lie; default beside the session; below the rig file's folder */
+            patches?: string;
+            /** @description The calibration to add them to; default the session's own; below the rig file's folder */
+            from?: string;
+            /** @description The paper reflects 1 - delta (1 - cosine) of Lambert's law; default as the lights' report has it */
+            paper_delta?: number;
+            /** @description Folder of the new calibration, which must not exist; below the rig file's folder */
+            output: string;
+        };
+        /** Update of the calibration */
+        CalibrateUpdateJob: {
+            /** @enum {string} */
+            kind: "calibrate_update";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description A scan after the move that shows tags, white patches or the sheet; or a folder of scans of the sheet in several poses (weft capture moved): its name */
+            session?: string;
+            /** @description In its place a set of photographs: folder below the rig file's */
+            moved?: string;
+            /** @description The calibration in question; default each session's own; below the rig file's folder */
+            from?: string;
+            /** @description sheet.toml of the sheet in the pictures; default no sheet; below the rig file's folder */
+            sheet?: string;
+            /** @description The paper reflects 1 - delta (1 - cosine) of Lambert's law; default as the lights' report has it */
+            paper_delta?: number;
+            /** @description Folder of the new calibration, which must not exist; below the rig file's folder */
+            output: string;
+        } & ((unknown | unknown) & unknown & {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "calibrate_update";
+        });
+        /** Plan of a batch */
+        BatchPlanJob: {
+            /** @enum {string} */
+            kind: "batch_plan";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Their names, at most 2000; in the job their number */
+            sessions?: string[];
+            /** @description In their place the words of GET sessions but limit and after; all that is found is planned */
+            find?: Record<string, unknown>;
+            /** @description Of the batch, default the next number */
+            name?: string;
+            /**
+             * @description Level of all of them
+             * @default standard
+             * @enum {string}
+             */
+            quality?: "preview" | "fast" | "standard" | "robust" | "reference";
+            /** @description Of each the cheapest level expected to be so many degrees off at most */
+            to_deg?: number;
+            /** @description Node-hours for all of them, spent where a second buys most degrees: 8h, 30m, 90s, 2d */
+            within_s?: number;
+            /** @description Leave out sessions whose maps would turn by less than so many degrees, as measured on the sample */
+            least_change_deg?: number;
+            /** @description Calibration folder in place of the own ones of the sessions of its rig; may be given again; below the rig file's folder */
+            calibration?: string | string[];
+            /** @description Made of each solve, by commas: maps, export:PRESET */
+            then?: string[];
+            /** @description Maps of a solve that stay, by commas; default all: normal, albedo, sigma, residual, status */
+            keep?: ("normal" | "albedo" | "sigma" | "residual" | "status")[];
+            /**
+             * @description Normals as half floats, true to 0.03 degrees
+             * @default false
+             */
+            half?: boolean;
+            /**
+             * @description Of EXR files: none, zip, piz
+             * @default none
+             * @enum {string}
+             */
+            compress?: "none" | "zip" | "piz";
+            /**
+             * @description Sessions whose levels are measured
+             * @default 50
+             */
+            sample?: number;
+            /**
+             * @description Of a task
+             * @default 10
+             */
+            task_minutes?: number;
+        } & ((unknown | unknown) & unknown & unknown & unknown & unknown & {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "batch_plan";
+        });
+        /** Batch */
+        BatchRunJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "batch_run";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description As GET batches names it */
+            batch: string;
+            /**
+             * @description Sessions at a time, which share the threads
+             * @default 1
+             */
+            at_once?: number;
+            /**
+             * @description Try sessions again that failed before
+             * @default false
+             */
+            retry_failed?: boolean;
+            /** @description Maps of a solve that stay, by commas; default all: normal, albedo, sigma, residual, status */
+            keep?: ("normal" | "albedo" | "sigma" | "residual" | "status")[];
+            /**
+             * @description Normals as half floats, true to 0.03 degrees
+             * @default false
+             */
+            half?: boolean;
+            /** @description That a session may hold, else it is lost alone: 1500M, 2G */
+            memory_mb?: number;
+        };
+        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["TortureJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
     };
     responses: {
         /** @description Not a request that can be read */

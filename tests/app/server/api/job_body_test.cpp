@@ -83,8 +83,8 @@ TEST_F(JobBody, BecomesAVerbWithItsArguments) {
       (Words{"calibrate", "check", "--session", "/scans/satin.weft", "--from", path("calibrations/may")}));
   EXPECT_EQ(arguments(R"({"kind": "calibrate_camera", "input": "photographs/board", "squares_x": 9,
                           "output": "calibrations/june"})"),
-            (Words{"calibrate", "camera", path("photographs/board"), "--output", path("calibrations/june"),
-                   "--squares-x", "9", "--rig", "north"}));
+            (Words{"calibrate", "camera", path("photographs/board"), "--rig", "north", "--output",
+                   path("calibrations/june"), "--squares-x", "9"}));
   const Result<JobSpec> lights = read(R"({"kind": "calibrate_lights", "input": "photographs",
                                           "output": "new", "from": "calibrations/may", "request_id": "a"})");
   ASSERT_TRUE(lights) << lights.error().message();
@@ -96,8 +96,8 @@ TEST_F(JobBody, BecomesAVerbWithItsArguments) {
 TEST_F(JobBody, PlansABatchOfNamedOrFoundSessions) {
   const auto place = [&](const char* name) { return (batches() / name).string(); };
   EXPECT_EQ(arguments(R"({"kind": "batch_plan", "find": {"query": "wool"}, "within_s": 28800, "sample": 3})"),
-            (Words{"batch", "plan", "--within", "28800s", "--sample", "3", "--list",
-                   place("0001/sessions.txt"), "--plan", place("0001/plan.jsonl")}));
+            (Words{"batch", "plan", "--list", place("0001/sessions.txt"), "--plan", place("0001/plan.jsonl"),
+                   "--within", "28800s", "--sample", "3"}));
   EXPECT_EQ(read_text(batches() / "0001" / "sessions.txt").value(), "/scans/a.weft\n/scans/b.weft\n");
   const Result<JobSpec> named =
       read(R"({"kind": "batch_plan", "sessions": ["satin", "satin"], "name": "autumn", "to_deg": 0.5})");
@@ -112,7 +112,7 @@ TEST_F(JobBody, PlansABatchOfNamedOrFoundSessions) {
   ASSERT_TRUE(corrected) << corrected.error().message();
   EXPECT_EQ(corrected->of, "0002");
   EXPECT_EQ(corrected->needs, (Words{path("calibrations/may")}));
-  EXPECT_EQ((Words(corrected->arguments.begin() + 2, corrected->arguments.begin() + 4)),
+  EXPECT_EQ((Words(corrected->arguments.end() - 2, corrected->arguments.end())),
             (Words{"--calibration", path("calibrations/may")}));
 }
 
@@ -145,11 +145,10 @@ TEST_F(JobBody, RefusesABatchThatCannotBePlannedAndBeginsNone) {
 }
 
 TEST_F(JobBody, PlansLightsForTheRigOfTheDaemonAndNoOther) {
-  const Words plan = {"rig", "plan", "--picture", "{files}/plan.svg"};
+  const Words plan = {"rig", "plan", "--picture", "{files}/plan.svg", path("rig.toml")};
   const auto planned = [&](const char* body, Words said) {
     Words all = plan;
     all.insert(all.end(), said.begin(), said.end());
-    all.push_back(path("rig.toml"));
     EXPECT_EQ(arguments(body), all) << body;
   };
   planned(R"({"kind": "rig_plan"})", {});
@@ -180,10 +179,8 @@ TEST_F(JobBody, HasARecipeAsTheTextThatItsVerbReads) {
       arguments(
           R"({"kind": "maps", "session": "satin", "solve": "ab12", "draft": true, "maps": ["height", "cavity"],
                           "mm_per_pixel": 0.125, "preview": true, "steps": {"steps": [{"do": "flatten"}]}})"),
-      (Words{"maps", "/scans/satin.weft", "--solve", "ab12", "--draft", "--mm-per-pixel", "0.125",
-             "--preview", "--steps",
-             R"({"steps":[{"do":"flatten","by":"polynomial","degree":3,"cut_mm":20.0,"always":false}]})",
-             "--maps", "height,cavity"}));
+      (Words{"maps", "/scans/satin.weft", "--solve", "ab12", "--draft", "--mm-per-pixel", "0.125", "--steps",
+             R"({"steps":[{"do":"flatten"}]})", "--preview", "--maps", "height,cavity"}));
   EXPECT_EQ(arguments(R"({"kind": "finish", "session": "satin", "recipe": "detail", "preview": false})"),
             (Words{"finish", "/scans/satin.weft", "--recipe", "detail"}));
   for (const char* wrong :
@@ -198,7 +195,8 @@ TEST_F(JobBody, HasARecipeAsTheTextThatItsVerbReads) {
   const Result<JobSpec> third = read(
       R"({"kind": "maps", "session": "satin", "steps": {"steps": [{"do": "tile"}, {"do": "crop", "at": 3}]}})");
   ASSERT_FALSE(third);
-  EXPECT_EQ(third.error().where, "steps: step 2");
+  EXPECT_EQ(third.error().where, "steps");
+  EXPECT_NE(third.error().why.find("step 2"), std::string::npos) << third.error().why;
 }
 
 TEST_F(JobBody, ExportsMapsOfASessionOrABuiltMaterial) {
@@ -206,7 +204,7 @@ TEST_F(JobBody, ExportsMapsOfASessionOrABuiltMaterial) {
       arguments(R"({"kind": "export", "session": "satin", "set": "ab12", "presets": ["unreal", "glb"]})"),
       (Words{"export", "/scans/satin.weft", "--maps", "ab12", "--preset", "unreal,glb"}));
   EXPECT_EQ(arguments(R"({"kind": "export_price", "session": "satin", "presets": ["exr"], "name": "red"})"),
-            (Words{"export", "--explain", "/scans/satin.weft", "--name", "red", "--preset", "exr"}));
+            (Words{"export", "--explain", "/scans/satin.weft", "--preset", "exr", "--name", "red"}));
   EXPECT_EQ(arguments(R"({"kind": "export", "material": "dusty", "set": "ab", "presets": ["glb"]})"),
             (Words{"export", "/materials/dusty/ab", "--preset", "glb"}));
   EXPECT_EQ(arguments(R"({"kind": "export", "material": "dusty", "presets": ["glb"]})"),

@@ -2,7 +2,7 @@
 import {describe, expect, test} from 'vitest';
 import {
   currentStage, findingsIn, freeName, fromOf, isUnharmed, jobOf, madeBy, notesBeside, requestOf, stagesOf, standingOf, trialOf, walkOfSet, walksIn,
-  type CheckResult, type Job, type Known, type Listed, type Stage, type Walk,
+  type CheckResult, type Job, type Known, type Listed, type Stage, type Walk, type Walks,
 } from '../../../../app/web/src/screens/calibrate/walk';
 import type {PhotographSet} from '../../../../app/web/src/screens/calibrate/photograph_set';
 
@@ -29,11 +29,31 @@ function sheets(...photographs: [name: string, used: boolean][]): PhotographSet 
   } as Partial<PhotographSet> as PhotographSet;
 }
 
+function stageOf(result: string, part: Stage['part'], job: Stage['job'], changes: Partial<Stage> = {}): Stage {
+  return {result, part, job, title: result, about: '', thing: null, is_optional: false, is_aside: false, is_photographed: false, ...changes};
+}
+
+/** As the daemon serves them. */
+const walks: Walks = {
+  all: [
+    stageOf('camera', 'board', 'calibrate_camera', {thing: 'board'}),
+    stageOf('trap', 'trap', 'calibrate_response', {is_optional: true, is_aside: true}),
+    stageOf('response', 'response', 'calibrate_response'),
+    stageOf('lights', 'sheet', 'calibrate_lights', {thing: 'sheet'}),
+    stageOf('color', 'chart', 'calibrate_color', {thing: 'chart', is_optional: true}),
+    stageOf('check', 'check', 'check', {thing: 'sheet'}),
+  ],
+  refresh: [
+    stageOf('moved', 'moved', 'check', {thing: 'sheet'}),
+    stageOf('updated', 'moved', 'calibrate_update', {thing: 'sheet', is_photographed: true}),
+    stageOf('check', 'check', 'check', {thing: 'sheet'}),
+  ],
+};
 const rigs = listed('calibration', {is_rigs: true});
-const bare: Known = {calibrations: [rigs], checks: [], jobs: [], series: []};
+const bare: Known = {calibrations: [rigs], checks: [], jobs: [], series: [], walks};
 
 function stage(walk: Walk, result: string): Stage {
-  const found = stagesOf(walk.kind).find((each) => each.result === result);
+  const found = stagesOf(walk, bare).find((each) => each.result === result);
   if (!found) throw new Error(`there is no stage ${result}`);
   return found;
 }
@@ -47,7 +67,7 @@ describe('a walk', () => {
   });
 
   test('begins with nothing at a rig that has nothing', () => {
-    const nothing: Known = {calibrations: [], checks: [], jobs: [], series: []};
+    const nothing: Known = {calibrations: [], checks: [], jobs: [], series: [], walks};
     expect(fromOf(all, stage(all, 'camera'), nothing)).toBeNull();
     expect(requestOf(all, stage(all, 'camera'), nothing)).not.toHaveProperty('from');
   });
@@ -160,6 +180,8 @@ describe('the names of walks', () => {
       calibrations: [rigs, listed('calibrations/first-camera'), listed('calibrations/knock-updated', {measured: '2026-11-22T10:00:00Z'})],
       checks: [check('calibrations/first-check', true), check('calibrations/leaned-moved', true)],
       jobs: [],
+      series: [],
+      walks,
     };
     expect(walksIn(known)).toEqual([
       {kind: 'refresh', name: 'knock'}, {kind: 'refresh', name: 'leaned'}, {kind: 'all', name: 'first'},

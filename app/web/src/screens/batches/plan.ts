@@ -2,6 +2,7 @@
 // A batch before it is run: what is asked for, and its plan as people read it.
 import type {Schemas} from '../../api/client';
 import {counted} from '../../ui/say';
+import type {Wish as Said} from '../../ui/schema';
 import {filtersIn, questionOf} from '../sessions/filters';
 
 export type Plan = NonNullable<Schemas['OneBatch']['plan']>;
@@ -46,7 +47,7 @@ function above(text: string): number | null {
 }
 
 /** The request; or what is wrong with the wish, as a sentence. */
-export function requestOf(scope: Scope, {aim, quality, hours, degrees, leastChange, sample}: Wish): Schemas['JobRequest'] | string {
+export function requestOf(scope: Scope, {aim, quality, hours, degrees, leastChange, sample}: Wish, said: Said = {}): Schemas['BatchPlanJob'] | string {
   const hours_h = above(hours);
   const to_deg = above(degrees);
   const least_change_deg = above(leastChange);
@@ -64,6 +65,7 @@ export function requestOf(scope: Scope, {aim, quality, hours, degrees, leastChan
     ...(to_deg !== null && aim === 'degrees' && {to_deg}),
     ...(least_change_deg !== null && {least_change_deg}),
     sample: count,
+    ...said,
   };
 }
 

@@ -1,29 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// The begin of a set of photographs: what is laid on the table, in words that the daemon reads, and a button. The set
-// keeps the words, so they are needed once.
+// The begin of a set of photographs: what is laid on the table, and a button. The set keeps it, so it is said once.
 import {useState} from 'preact/hooks';
+import {forms} from '../../state/forms';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
+import {schemaOf, type Wish} from '../../ui/schema';
+import {SchemaForm} from '../../ui/schema_form';
 import {known, workOn} from './state';
 import {fromOf, setOf, type Stage, type Walk} from './walk';
 
 type Thing = NonNullable<Stage['thing']>;
+interface Described {
+  wish: Wish;
+  /** Of a file, in place of the form; empty: none was chosen. */
+  text: string;
+}
 
-/** The last words for each thing: the sheet of the lights is that of the proof. */
-const described = new Map<Thing, string>();
+const nothing: Described = {wish: {}, text: ''};
+/** What was said last of each thing: the sheet of the lights is that of the proof. */
+const described = new Map<Thing, Described>();
 
 export function Begin({walk, stage}: {walk: Walk; stage: Stage}) {
   const {thing, part, about} = stage;
-  const [text, setText] = useState(thing ? (described.get(thing) ?? '') : '');
+  const [said, say] = useState((thing && described.get(thing)) ?? nothing);
   const begin = useAction(async () => {
-    await workOn({part, name: setOf(walk, stage), from: fromOf(walk, stage, known.value), description: text});
-    if (thing && text !== '') described.set(thing, text);
+    const isSaid = Object.keys(said.wish).length > 0;
+    await workOn({part, name: setOf(walk, stage), from: fromOf(walk, stage, known.value), thing: said.text || (isSaid ? said.wish : null)});
+    if (thing) described.set(thing, said);
   });
   return (
     <form class="begin" onSubmit={(event) => (event.preventDefault(), void begin.run())}>
       <p class="says">{about}</p>
-      {thing && <Description thing={thing} text={text} onText={setText} />}
+      {thing && <Description thing={thing} said={said} onSaid={say} />}
       <div><Button kind="main" type="submit" isDisabled={begin.isBusy}>Begin, or go on with its photographs</Button></div>
       <Complaint error={begin.complaint} />
     </form>
@@ -32,21 +41,21 @@ export function Begin({walk, stage}: {walk: Walk; stage: Stage}) {
 
 interface DescriptionProps {
   thing: Thing;
-  text: string;
-  onText: (text: string) => void;
+  said: Described;
+  onSaid: (said: Described) => void;
 }
 
-/** Typed, pasted, or taken from a file. */
-function Description({thing, text, onText}: DescriptionProps) {
+/** Field by field, or taken from a file. */
+function Description({thing, said, onSaid}: DescriptionProps) {
   const take = async (file: File | undefined) => {
-    if (file) onText(await file.text());
+    if (file) onSaid({wish: {}, text: await file.text()});
   };
   return (
     <fieldset class="description">
-      <legend>What the {thing} is: the text of its {thing}.toml. Where the rig knows it already, leave this empty.</legend>
-      <label for="description-text">Text of {thing}.toml</label>
-      <textarea id="description-text" rows={10} spellcheck={false} value={text} onInput={(event) => onText(event.currentTarget.value)} />
-      <label for="description-file">or a file</label>
+      <legend>What the {thing} is. Where the rig knows it already, leave this empty.</legend>
+      {said.text === '' && <SchemaForm schema={schemaOf(forms.value.things[thing])} wish={said.wish} onWish={(wish) => onSaid({wish, text: ''})} prefix={`${thing}-`} />}
+      {said.text !== '' && <pre>{said.text}</pre>}
+      <label for="description-file">{said.text === '' ? 'Or its file' : 'Its file'}, {thing}.toml</label>
       <input id="description-file" type="file" accept=".toml,text/plain" onChange={(event) => void take(event.currentTarget.files?.[0])} />
     </fieldset>
   );

@@ -3,15 +3,18 @@
 import {asApiError, type ApiError} from '../../api/client';
 import {useState} from 'preact/hooks';
 import {amend} from '../../state/address';
+import {formOf} from '../../state/forms';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {listIn, textIn} from '../../ui/fields';
 import {Mark} from '../../ui/mark';
+import type {Wish} from '../../ui/schema';
+import {More} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
 import {errorOf} from '../jobs/price';
 import {cancel, queueJob} from '../jobs/state';
 import {known} from './state';
-import {findingsIn, hasResult, notesBeside, jobOf, requestOf, standingOf, type Job, type Stage, type Walk} from './walk';
+import {findingsIn, hasResult, notesBeside, jobOf, requestOf, standingOf, type Job, type JobRequest, type Stage, type Walk} from './walk';
 
 interface CalculationProps {
   walk: Walk;
@@ -20,15 +23,19 @@ interface CalculationProps {
   isEnough: boolean;
 }
 
+/** What the walk itself says. */
+const saidHere = ['input', 'session', 'moved', 'from', 'output', 'trap'];
+
 export function Calculation({walk, stage, isEnough}: CalculationProps) {
   const [complaint, complain] = useState<ApiError | null>(null);
+  const [wish, setWish] = useState<Wish>({});
   const job = jobOf(walk, stage, known.value);
   const standing = standingOf(walk, stage, known.value);
   /** The stage stays chosen, so that its result is read before the next one begins. */
   const calculate = () => {
     complain(null);
     amend({step: stage.result});
-    queueJob(requestOf(walk, stage, known.value)).catch((error: unknown) => complain(asApiError(error)));
+    queueJob({...requestOf(walk, stage, known.value), ...wish} as JobRequest).catch((error: unknown) => complain(asApiError(error)));
   };
   if (job && standing === 'working') return <Working job={job} />;
   return (
@@ -36,6 +43,7 @@ export function Calculation({walk, stage, isEnough}: CalculationProps) {
       {job && hasResult(standing) && <Result job={job} />}
       {standing === 'failed' && job && <Complaint error={errorOf(job)} />}
       <Complaint error={complaint} />
+      {!hasResult(standing) && <More of={stage.title.toLowerCase()} schema={formOf(stage.job)} wish={wish} onWish={setWish} without={saidHere} />}
       {!hasResult(standing) && (
         <Button kind={isEnough ? 'main' : 'plain'} onClick={calculate}>
           {isEnough ? `Calculate: ${stage.title.toLowerCase()}` : 'Enough: calculate with these'}

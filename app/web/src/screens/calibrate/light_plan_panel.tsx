@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which light to add, before a screw is turned: what each would tell of a cloth, and what it costs a scan.
 import {useState} from 'preact/hooks';
+import {formOf} from '../../state/forms';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
@@ -8,6 +9,8 @@ import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
 import {Mark} from '../../ui/mark';
 import {age} from '../../ui/say';
+import {type Wish, wordsOf} from '../../ui/schema';
+import {More} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
 import {Table} from '../../ui/table';
 import {durationOf} from '../../ui/words';
@@ -16,18 +19,16 @@ import {hasEnded, type Job} from '../jobs/queue';
 import {cancel, jobs, queueJob} from '../jobs/state';
 import {lightPlanOf, requestOfPlan, signed, type Aim, type Cloth, type LightPlan, type LightRow} from './light_plan';
 
-const cloths: Record<Cloth | 'typed', string> = {
-  satin: 'satin',
-  'dark-satin': 'dark satin',
-  velvet: 'velvet',
-  wool: 'wool',
-  cotton: 'cotton',
-  typed: 'of this roughness',
-};
 const aims: Record<Aim, string> = {all: 'all of it', normal: 'normals', alpha: 'roughness', f0: 'strength of the gloss'};
+const saidHere = ['cloth', 'roughness', 'f0', 'aim'];
 
-function optionsOf<T extends string>(words: Record<T, string>) {
-  return (Object.keys(words) as T[]).map((value) => ({value, says: words[value]}));
+function cloths(): {value: Cloth | 'typed'; says: string}[] {
+  const named = wordsOf(formOf('rig_plan'), 'cloth').map((value) => ({value: value as Cloth, says: value.replace('-', ' ')}));
+  return [...named, {value: 'typed', says: 'of this roughness'}];
+}
+
+function aimOptions() {
+  return (Object.keys(aims) as Aim[]).map((value) => ({value, says: aims[value]}));
 }
 
 export function LightPlanPanel() {
@@ -35,19 +36,21 @@ export function LightPlanPanel() {
   const [roughness, setRoughness] = useState('0.3');
   const [f0, setF0] = useState('0.04');
   const [aim, setAim] = useState<Aim>('all');
-  const plan = useAction(() => queueJob(requestOfPlan({cloth, roughness, f0, aim})));
+  const [wish, setWish] = useState<Wish>({});
+  const plan = useAction(() => queueJob(requestOfPlan({cloth, roughness, f0, aim, wish})));
   const planned = jobs.value.find((job) => job.kind === 'rig_plan' && job.state !== 'cancelled');
   const isBusy = planned !== undefined && !hasEnded(planned);
   return (
     <section class="panel light-plan" aria-labelledby="light-plan-title">
       <h2 id="light-plan-title">Which light to add</h2>
       <div class="row">
-        <Choice label="Cloth" value={cloth} options={optionsOf(cloths)} onChange={setCloth} />
+        <Choice label="Cloth" value={cloth} options={cloths()} onChange={setCloth} />
         {cloth === 'typed' && <Field label="Roughness" type="number" value={roughness} onInput={setRoughness} />}
         {cloth === 'typed' && <Field label="Strength" type="number" value={f0} onInput={setF0} />}
-        <Choice label="Best for" value={aim} options={optionsOf(aims)} onChange={setAim} />
+        <Choice label="Best for" value={aim} options={aimOptions()} onChange={setAim} />
         <Button isDisabled={plan.isBusy || isBusy} onClick={() => void plan.run()}>Say what each light tells</Button>
       </div>
+      <More of="the plan" schema={formOf('rig_plan')} wish={wish} onWish={setWish} without={saidHere} />
       <Complaint error={plan.complaint} />
       {planned && <Planned job={planned} />}
     </section>

@@ -4,7 +4,9 @@ import {batch, computed, signal} from '@preact/signals';
 import {useEffect} from 'preact/hooks';
 import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
+import {forms} from '../../state/forms';
 import {withDevicesFree} from '../desk/devices';
+import type {Fields} from '../../ui/fields';
 import {hasEnded} from '../jobs/queue';
 import {jobs, useJobs} from '../jobs/state';
 import {historyOf, noHistory, type History} from './history';
@@ -27,6 +29,7 @@ export const known = computed<Known>(() => ({
   checks: history.value.checks,
   jobs: jobs.value,
   series: series.value,
+  walks: forms.value.walks,
 }));
 
 export async function askCalibrations(): Promise<void> {
@@ -82,12 +85,14 @@ export interface Wish {
   part: Part;
   name: string;
   from: string | null;
-  description: string;
+  /** What lies there, in the fields of its form or the text of its file; null: as the rig knows it. */
+  thing: Fields | string | null;
 }
 
 /** Begins a set or goes on with it. */
-export async function workOn({part, name, from, description}: Wish): Promise<void> {
-  const body = {part, name, ...(from === null ? {} : {from}), ...(description === '' ? {} : {description})};
+export async function workOn({part, name, from, thing}: Wish): Promise<void> {
+  const described = thing === null ? {} : typeof thing === 'string' ? {description: thing} : {thing};
+  const body = {part, name, ...(from === null ? {} : {from}), ...described};
   work.value = await answer(api.POST('/api/v1/calibrations/work', {body}));
 }
 

@@ -8,104 +8,11 @@ import type {PhotographSet} from './photograph_set';
 export type Listed = Schemas['ListedCalibration'];
 export type Job = Schemas['Job'];
 export type JobRequest = Schemas['JobRequest'];
-export type Part = 'board' | 'response' | 'trap' | 'sheet' | 'chart' | 'check' | 'moved';
-export type WalkKind = 'all' | 'refresh';
-
-export interface Stage {
-  /** What its folder ends with. */
-  result: string;
-  /** Of its photographs. */
-  part: Part;
-  title: string;
-  about: string;
-  /** It reads the photographs. */
-  job: JobRequest['kind'];
-  /** The thing that must be described before it can be found in a photograph. */
-  thing: 'board' | 'sheet' | 'chart' | null;
-  isOptional?: true;
-  /** Its photographs are read by the stage after it; a walk comes by it only where a person chooses it. */
-  isAside?: true;
-  /** The stage before it has taken its photographs. */
-  isPhotographed?: true;
-}
-
-const proof: Stage = {
-  result: 'check',
-  part: 'check',
-  title: 'Proof',
-  about: 'Three sheets that nothing was fitted to.',
-  job: 'check',
-  thing: 'sheet',
-};
-
-const stages: Record<WalkKind, Stage[]> = {
-  all: [
-    {
-      result: 'camera',
-      part: 'board',
-      title: 'Lens and place',
-      about: 'A printed board in several poses.',
-      job: 'calibrate_camera',
-      thing: 'board',
-    },
-    {
-      result: 'trap',
-      part: 'trap',
-      title: 'Veil of the lens',
-      about: 'A black trap in white paper; for dark cloth.',
-      job: 'calibrate_response',
-      thing: null,
-      isOptional: true,
-      isAside: true,
-    },
-    {
-      result: 'response',
-      part: 'response',
-      title: 'Sensor',
-      about: 'Anything that lies still, then the covered lens.',
-      job: 'calibrate_response',
-      thing: null,
-    },
-    {
-      result: 'lights',
-      part: 'sheet',
-      title: 'Lights',
-      about: 'A white sheet in five poses.',
-      job: 'calibrate_lights',
-      thing: 'sheet',
-    },
-    {
-      result: 'color',
-      part: 'chart',
-      title: 'Colour',
-      about: 'One scan of a colour chart.',
-      job: 'calibrate_color',
-      thing: 'chart',
-      isOptional: true,
-    },
-    proof,
-  ],
-  refresh: [
-    {
-      result: 'moved',
-      part: 'moved',
-      title: 'What moved',
-      about: 'The white sheet in three poses, among the tags of the table.',
-      job: 'check',
-      thing: 'sheet',
-    },
-    {
-      result: 'updated',
-      part: 'moved',
-      title: 'Fitted again',
-      about: 'From the same photographs: nothing to lay.',
-      job: 'calibrate_update',
-      thing: 'sheet',
-      isPhotographed: true,
-    },
-    proof,
-  ],
-};
+export type WalkKind = keyof Walks;
+/** The stages of each walk, as the daemon has them. */
+export type Walks = Schemas['Forms']['walks'];
+export type Stage = Schemas['WalkStage'];
+export type Part = Stage['part'];
 
 export interface Walk {
   kind: WalkKind;
@@ -119,6 +26,7 @@ export interface Known {
   jobs: readonly Job[];
   /** Names of the sets that are photographed as a series, and are whole. */
   series: readonly string[];
+  walks: Walks;
 }
 
 export interface CheckResult {
@@ -131,8 +39,8 @@ export interface CheckResult {
 
 export type Standing = 'open' | 'working' | 'failed' | 'done' | 'found';
 
-export function stagesOf(kind: WalkKind): readonly Stage[] {
-  return stages[kind];
+export function stagesOf(walk: Walk, {walks}: Known): readonly Stage[] {
+  return walks[walk.kind];
 }
 
 export function setOf(walk: Walk, stage: Stage): string {
@@ -150,7 +58,7 @@ export function jobOf(walk: Walk, stage: Stage, known: Known): Job | null {
 }
 
 export function standingOf(walk: Walk, stage: Stage, known: Known): Standing {
-  if (stage.isAside) return known.series.includes(setOf(walk, stage)) ? 'done' : 'open';
+  if (stage.is_aside) return known.series.includes(setOf(walk, stage)) ? 'done' : 'open';
   const folder = folderOf(walk, stage);
   const check = known.checks.find((each) => each.folder === folder);
   if (check) return check.passed ? 'done' : 'found';
@@ -176,28 +84,29 @@ export function hasResult(standing: Standing): boolean {
 
 /** The stage that a person is at; null: all of them have a result. */
 export function currentStage(walk: Walk, known: Known): Stage | null {
-  const all = stages[walk.kind];
+  const all = stagesOf(walk, known);
   const last = all.filter((stage) => hasResult(standingOf(walk, stage, known))).at(-1);
   const after = all.slice(last === undefined ? 0 : all.indexOf(last) + 1);
-  return after.find((stage) => !stage.isAside) ?? null;
+  return after.find((stage) => !stage.is_aside) ?? null;
 }
 
 /** That nothing moved: a knock did no harm. */
 export function isUnharmed(walk: Walk, known: Known): boolean {
-  const first = stages[walk.kind][0];
+  const first = stagesOf(walk, known)[0];
   return walk.kind === 'refresh' && first !== undefined && standingOf(walk, first, known) === 'done';
 }
 
 /** The calibration that a stage begins with: the last one of the walk before it, else the rig's. */
 export function fromOf(walk: Walk, stage: Stage, known: Known): string | null {
-  const before = stages[walk.kind].slice(0, stages[walk.kind].indexOf(stage));
+  const all = stagesOf(walk, known);
+  const before = all.slice(0, all.indexOf(stage));
   const made = before.map((each) => folderOf(walk, each)).filter((folder) => isListed(folder, known));
   return made.at(-1) ?? known.calibrations.find((each) => each.is_rigs)?.folder ?? null;
 }
 
 /** The calibration that the walk has made; null: none yet. */
 export function madeBy(walk: Walk, known: Known): string | null {
-  const made = stages[walk.kind].map((stage) => folderOf(walk, stage)).filter((folder) => isListed(folder, known));
+  const made = stagesOf(walk, known).map((stage) => folderOf(walk, stage)).filter((folder) => isListed(folder, known));
   return made.at(-1) ?? null;
 }
 
@@ -205,7 +114,8 @@ function isListed(folder: string, known: Known): boolean {
   return known.calibrations.some((each) => each.folder === folder);
 }
 
-function inputsOf(walk: Walk, stage: Stage, known: Known): JobRequest {
+/** Each kind of job takes those of them that the stages of its part have. */
+function inputsOf(walk: Walk, stage: Stage, known: Known) {
   const set = `sets/${setOf(walk, stage)}`;
   const from = fromOf(walk, stage, known);
   return {
@@ -217,7 +127,7 @@ function inputsOf(walk: Walk, stage: Stage, known: Known): JobRequest {
 }
 
 export function requestOf(walk: Walk, stage: Stage, known: Known): JobRequest {
-  return {...inputsOf(walk, stage, known), output: folderOf(walk, stage)};
+  return {...inputsOf(walk, stage, known), output: folderOf(walk, stage)} as JobRequest;
 }
 
 /**
@@ -227,7 +137,7 @@ export function requestOf(walk: Walk, stage: Stage, known: Known): JobRequest {
 export function trialOf(walk: Walk, stage: Stage, set: PhotographSet, known: Known): JobRequest | null {
   const used = set.photographs.filter((photograph) => photograph.used).map(({name}) => name);
   if (stage.part !== 'sheet' || set.next === null || used.length === 0) return null;
-  return {...inputsOf(walk, stage, known), request_id: [setOf(walk, stage), ...used].join('.')};
+  return {...inputsOf(walk, stage, known), request_id: [setOf(walk, stage), ...used].join('.')} as JobRequest;
 }
 
 /** Of a walk that was begun: all results beside the rig file that carry a walk's name, the newest first. */
@@ -238,17 +148,17 @@ export function walksIn(known: Known): Walk[] {
     ...known.checks,
   ].sort((a, b) => b.date.localeCompare(a.date));
   for (const {folder} of dated) {
-    const walk = walkOfFolder(folder);
+    const walk = walkOfFolder(folder, known.walks);
     if (walk && !walks.has(walk.name)) walks.set(walk.name, walk);
   }
   return [...walks.values()];
 }
 
-function walkOfFolder(folder: string): Walk | null {
+function walkOfFolder(folder: string, walks: Walks): Walk | null {
   const [, name, result] = /^calibrations\/(.+)-([a-z]+)$/.exec(folder) ?? [];
   if (name === undefined || result === undefined) return null;
-  const kind = (Object.keys(stages) as WalkKind[]).find((each) =>
-    stages[each].some((stage) => stage.result === result && stage !== proof),
+  const kind = (Object.keys(walks) as WalkKind[]).find((each) =>
+    walks[each].some((stage) => stage.result === result && stage.part !== 'check'),
   );
   return kind ? {kind, name} : null;
 }

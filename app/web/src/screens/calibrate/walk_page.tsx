@@ -23,7 +23,7 @@ const marks: Record<Standing, {verdict: Verdict; says: string}> = {
 };
 
 export function WalkPage({walk}: {walk: Walk}) {
-  const stages = stagesOf(walk.kind);
+  const stages = stagesOf(walk, known.value);
   const chosen = stages.find((stage) => stage.result === place.value.query.get('step'));
   const current = currentStage(walk, known.value);
   const stage = chosen ?? current ?? stages.at(-1);
@@ -56,7 +56,7 @@ function StageItem({walk, stage, isShown}: {walk: Walk; stage: Stage; isShown: b
     <li aria-current={isShown ? 'step' : undefined}>
       <button type="button" onClick={() => amend({step: stage.result})}>
         <strong>{stage.title}</strong>
-        <Mark verdict={verdict}>{stage.isOptional && verdict === 'waiting' ? 'to do, or leave it' : says}</Mark>
+        <Mark verdict={verdict}>{stage.is_optional && verdict === 'waiting' ? 'to do, or leave it' : says}</Mark>
         <span class="dim">{stage.about}</span>
       </button>
     </li>
@@ -68,17 +68,17 @@ function StagePanel({walk, stage}: {walk: Walk; stage: Stage}) {
   const set = work.value?.name === setOf(walk, stage) ? work.value : null;
   const standing = standingOf(walk, stage, known.value);
   const isOver = hasResult(standing);
-  const isToPhotograph = !isOver && !stage.isPhotographed;
+  const isToPhotograph = !isOver && !stage.is_photographed;
   const isBegun = set?.photographs.some((photograph) => photograph.used) ?? false;
   const trial = set && trialOf(walk, stage, set, known.value);
   const soFar = trial && <SoFar key={trial.request_id} trial={trial} />;
-  const calculation = !stage.isAside && <Calculation walk={walk} stage={stage} isEnough={stage.isPhotographed ?? set?.done ?? false} />;
+  const calculation = !stage.is_aside && <Calculation walk={walk} stage={stage} isEnough={stage.is_photographed ?? set?.done ?? false} />;
   return (
     <>
       {isToPhotograph && set === null && <Begin walk={walk} stage={stage} />}
       {isToPhotograph && set !== null && <SetPanel set={set} soFar={soFar}>{isBegun && calculation}</SetPanel>}
       {!isToPhotograph && calculation}
-      {isOver && stage.isAside && <p role="status">Its photographs are there. The sensor is measured by them, too.</p>}
+      {isOver && stage.is_aside && <p role="status">Its photographs are there. The sensor is measured by them, too.</p>}
       {isOver && <Next walk={walk} />}
     </>
   );

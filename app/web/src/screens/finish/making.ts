@@ -16,7 +16,7 @@ export interface Of {
   isDraft?: boolean;
 }
 
-export function requestOf({session, solve, isDraft}: Of, recipe: Recipe, isPreview: boolean): Schemas['JobRequest'] {
+export function requestOf({session, solve, isDraft}: Of, recipe: Recipe, isPreview: boolean): Schemas['MapsJob'] | Schemas['FinishJob'] {
   return {
     kind: isPreview ? 'finish' : 'maps',
     session,

@@ -4,6 +4,7 @@ import './finish.css';
 import {useEffect, useMemo, useState} from 'preact/hooks';
 import {answer, api} from '../../api/client';
 import {go} from '../../state/address';
+import {formOf} from '../../state/forms';
 import {useKeys} from '../../state/keys';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
@@ -12,6 +13,8 @@ import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import {isFields, textIn} from '../../ui/fields';
 import {Mark} from '../../ui/mark';
+import type {Wish} from '../../ui/schema';
+import {More} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
 import {errorOf} from '../jobs/price';
 import {hasEnded} from '../jobs/queue';
@@ -127,14 +130,18 @@ function Steps({viewer, recipe, recipes, onChange}: StepsProps) {
   );
 }
 
+const saidHere = ['session', 'solve', 'draft', 'recipe', 'steps', 'preview'];
+
 /** All maps, at the size of the photographs. */
 function MakeAll({of, recipe}: {of: Of; recipe: Recipe}) {
-  const make = useAction(() => queueJob(requestOf(of, recipe, false)));
+  const [wish, setWish] = useState<Wish>({});
+  const make = useAction(() => queueJob({...requestOf(of, recipe, false), ...wish}));
   const job = jobs.value.find(({kind, of: session}) => kind === 'maps' && session === of.session);
   const isBusy = job !== undefined && !hasEnded(job);
   const id = textIn(job?.result, 'id');
   return (
     <>
+      <More of="the maps" schema={formOf('maps')} wish={wish} onWish={setWish} without={saidHere} />
       <div class="row">
         <Button kind="main" isDisabled={make.isBusy || isBusy} onClick={() => void make.run()}>Finish: make all maps</Button>
         {job?.state === 'done' && id && (

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same pixels as every level makes them, side by side.
 import {useState} from 'preact/hooks';
+import type {Quality} from '../../state/forms';
 import {Button} from '../../ui/button';
 import {degreesOn} from '../../ui/say';
 import {durationOf} from '../../ui/words';
-import type {Level, Quality} from './ladder';
+import type {Level} from './ladder';
 
 interface CropsProps {
   /** Of the price. */

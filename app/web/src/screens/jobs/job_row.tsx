@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useState} from 'preact/hooks';
 import {asApiError, type ApiError} from '../../api/client';
+import {titleOf} from '../../state/forms';
 import {Cloth} from '../../ui/cloth';
 import {textIn} from '../../ui/fields';
 import {Button} from '../../ui/button';
@@ -9,7 +10,7 @@ import {Mark, type Verdict} from '../../ui/mark';
 import {Share} from '../../ui/share';
 import {durationOf, timeOf} from '../../ui/words';
 import {errorOf} from './price';
-import {hasEnded, stateOf, titleOf, wishOf, type Job} from './queue';
+import {hasEnded, stateOf, wishOf, type Job} from './queue';
 import {cancel, forget, putFirst, retry} from './state';
 
 interface JobRowProps {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each level of the solver would cost and give, as a job `price` found out.
+import type {Quality} from '../../state/forms';
 import {fieldsOf, listIn, numberIn, textIn} from '../../ui/fields';
-
-/** The levels, the quickest first. */
-export const qualities = ['preview', 'fast', 'standard', 'robust', 'reference'] as const;
-export type Quality = (typeof qualities)[number];
 
 export interface Level {
   quality: Quality;
@@ -16,16 +13,15 @@ export interface Level {
   note: string;
 }
 
-
 export function levelsIn(result: unknown): Level[] {
   return listIn(result, 'levels').flatMap((each) => levelOf(each) ?? []);
 }
 
 function levelOf(document: unknown): Level | null {
-  const quality = textIn(document, 'quality');
+  const quality = textIn(document, 'quality') as Quality;
   const predicted_deg = numberIn(document, 'predicted_deg');
   const seconds = numberIn(fieldsOf(document)['seconds'], 'total');
-  if (!isQuality(quality) || predicted_deg === null || seconds === null) return null;
+  if (String(quality) === '' || predicted_deg === null || seconds === null) return null;
   const parts = fieldsOf(document)['parts_deg'];
   const part = (name: string) => numberIn(parts, name) ?? 0;
   return {
@@ -36,10 +32,6 @@ function levelOf(document: unknown): Level | null {
     seconds,
     note: textIn(document, 'note'),
   };
-}
-
-function isQuality(text: string): text is Quality {
-  return (qualities as readonly string[]).includes(text);
 }
 
 /** Cloth of which less has a normal is not solved; as the command line has it. */

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Accuracy against time: each level as a point, and its error's parts as small marks below it.
+import type {Quality} from '../../state/forms';
 import {Axes} from '../../ui/axes';
 import {lanesOf, logScale} from '../../ui/plot_scale';
 import {degreesOn} from '../../ui/say';
 import {durationOf} from '../../ui/words';
-import type {Level, Quality} from './ladder';
+import type {Level} from './ladder';
 
 interface LadderPlotProps {
   levels: readonly Level[];

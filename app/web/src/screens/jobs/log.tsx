@@ -4,7 +4,8 @@ import {asApiError, type ApiError} from '../../api/client';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import {Dialog} from '../../ui/dialog';
-import {titleOf, type Job} from './queue';
+import {titleOf} from '../../state/forms';
+import type {Job} from './queue';
 import {logOf} from './state';
 
 /** What the verb of a job said. */

@@ -4,22 +4,29 @@ import './price.css';
 import {useState} from 'preact/hooks';
 import {asApiError, type ApiError, type Schemas} from '../../api/client';
 import {clothOf} from '../../state/cloths';
+import {formOf, type Quality} from '../../state/forms';
 import {Button} from '../../ui/button';
 import {Cloth} from '../../ui/cloth';
 import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
 import {degrees, degreesOn} from '../../ui/say';
+import type {Wish} from '../../ui/schema';
+import {More} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
 import {Table} from '../../ui/table';
 import {durationOf} from '../../ui/words';
 import {Crops} from './crops';
-import {drawable, levelsIn, worthwhile, type Level, type Quality} from './ladder';
+import {drawable, levelsIn, worthwhile, type Level} from './ladder';
 import {LadderPlot} from './ladder_plot';
 import {hasEnded, type Job} from './queue';
 import {jobs, queueJob} from './state';
 
+/** What a level that was priced says. */
+const saidHere = ['session', 'quality', 'method', 'within_s', 'to_deg', 'foretold'];
+
 export function Price({session}: {session: string}) {
   const [complaint, complain] = useState<ApiError | null>(null);
+  const [wish, setWish] = useState<Wish>({});
   const priced = jobs.value.find((job) => job.kind === 'price' && job.of === session && job.state !== 'cancelled');
   const levels = levelsIn(priced?.result);
 
@@ -28,7 +35,12 @@ export function Price({session}: {session: string}) {
     queueJob(request).catch((error: unknown) => complain(asApiError(error)));
   };
   const price = () => queue({kind: 'price', session});
-  const solve = (quality: Quality) => queue({kind: 'solve', session, quality});
+  /** What was foretold is kept beside what it takes. */
+  const solve = (quality: Quality) => {
+    const level = levels.find((each) => each.quality === quality);
+    const foretold = level && {foretold: [level.seconds, level.predicted_deg, level.solved]};
+    queue({kind: 'solve', session, quality, ...foretold, ...wish});
+  };
 
   return (
     <section class="panel price" aria-labelledby="price-title">
@@ -44,6 +56,7 @@ export function Price({session}: {session: string}) {
           <Button kind="main" onClick={price}>Measure the levels</Button>
         </Empty>
       )}
+      <More of="a solve" schema={formOf('solve')} wish={wish} onWish={setWish} without={saidHere} />
       {priced && levels.length > 0 && <Levels job={priced} levels={levels} onSolve={solve} />}
     </section>
   );

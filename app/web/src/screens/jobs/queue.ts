@@ -11,34 +11,6 @@ export interface Queue {
   ended: Job[];
 }
 
-const titles: Record<string, string> = {
-  solve: 'Solve',
-  price: 'Price of each level',
-  rectify: 'Rectified maps',
-  maps: 'Maps',
-  finish: 'Finished maps',
-  export: 'Export',
-  export_price: 'Price of an export',
-  material: 'Built material',
-  batch_plan: 'Plan of a batch',
-  batch_run: 'Batch',
-  copy: 'Second copy',
-  torture: 'Torture scene',
-  rig_plan: 'Which light to add',
-  check: 'Check of the calibration',
-  calibrate_camera: 'Lens and pose',
-  calibrate_response: 'Sensor',
-  calibrate_color: 'Colour',
-  calibrate_lights: 'Lights',
-  calibrate_grey: 'Grey scale',
-  calibrate_patches: 'White patches',
-  calibrate_update: 'Update of the calibration',
-};
-
-export function titleOf(kind: string): string {
-  return titles[kind] ?? kind;
-}
-
 /** What was asked of it beside its kind: the level, a limit, another calibration. */
 export function wishOf({wants}: Job): string {
   const {quality, method, within_s, to_deg, calibration, cloth, preview, recipe, presets, sessions} = wants;

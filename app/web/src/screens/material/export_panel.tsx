@@ -3,11 +3,14 @@
 import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type ApiError, asApiError, fetched, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
+import {formOf} from '../../state/forms';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import {Mark} from '../../ui/mark';
+import type {Wish} from '../../ui/schema';
+import {More} from '../../ui/schema_form';
 import {bytesOf} from '../../ui/words';
 import {hasEnded} from '../jobs/queue';
 import {jobs, queueJob, useJobs} from '../jobs/state';
@@ -15,17 +18,20 @@ import {addressOfExports, addressOfFile, type ExportFile, filesOf, type Price, p
 import {JobLine} from './job_line';
 import type {MaterialName} from './sight';
 
+const saidHere = ['session', 'material', 'set', 'presets', 'draft'];
+
 export function ExportPanel({name, isDraft}: {name: MaterialName; isDraft: boolean}) {
   useJobs();
   const [presets, setPresets] = useState<Schemas['Preset'][]>([]);
   const [takesDraft, setTakesDraft] = useState(false);
   const [chosen, setChosen] = useState<string[]>([]);
+  const [wish, setWish] = useState<Wish>({});
   const [complaint, setComplaint] = useState<ApiError | null>(null);
   useEffect(() => {
     answer(api.GET('/api/v1/presets')).then((list) => setPresets(list.presets), (error: unknown) => setComplaint(asApiError(error)));
   }, []);
-  const price = useAction(() => queueJob(requestOf('export_price', name, chosen, isDraft && takesDraft)));
-  const make = useAction(() => queueJob(requestOf('export', name, chosen, isDraft && takesDraft)));
+  const price = useAction(() => queueJob({...requestOf('export_price', name, chosen, isDraft && takesDraft), ...wish}));
+  const make = useAction(() => queueJob({...requestOf('export', name, chosen, isDraft && takesDraft), ...wish}));
   const newest = (kind: string) => jobs.value.find((job) => job.kind === kind && job.of === name.of && job.wants.set === name.id);
   const prices = pricesOf(newest('export_price')?.result);
   const formats = prices.get('');
@@ -47,6 +53,7 @@ export function ExportPanel({name, isDraft}: {name: MaterialName; isDraft: boole
             {' '}Export the draft: it is of a preview, of half the size and without masks
           </label>
         )}
+        <More of="the export" schema={formOf('export')} wish={wish} onWish={setWish} without={saidHere} />
         <div class="row sticky">
           <Button isDisabled={chosen.length === 0 || price.isBusy || isRunning('export_price')} onClick={() => void price.run()}>What it costs</Button>
           <Button kind="main" isDisabled={chosen.length === 0 || make.isBusy || isRunning('export')} onClick={() => void make.run()}>Export</Button>

@@ -72,6 +72,6 @@ export function addressOfFile(name: MaterialName, preset: string, file: string):
 }
 
 /** What a job is asked for. */
-export function requestOf(kind: 'export' | 'export_price', {of, is, id}: MaterialName, presets: string[], draft = false): Schemas['JobRequest'] {
+export function requestOf(kind: 'export' | 'export_price', {of, is, id}: MaterialName, presets: string[], draft = false): Schemas['ExportJob'] | Schemas['ExportPriceJob'] {
   return {kind, ...(is === 'maps' ? {session: of} : {material: of}), set: id, presets, ...(draft && {draft})};
 }

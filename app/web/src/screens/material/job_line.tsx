@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+import {titleOf} from '../../state/forms';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Mark} from '../../ui/mark';
 import {Share} from '../../ui/share';
 import {errorOf} from '../jobs/price';
-import {hasEnded, type Job, titleOf} from '../jobs/queue';
+import {hasEnded, type Job} from '../jobs/queue';
 import {cancel} from '../jobs/state';
 
 /** How a job is, with a way to end it; what went wrong of one that failed. */

@@ -2,6 +2,7 @@
 // What can be done with all chosen sessions at once: tags, and jobs for each.
 import {useState} from 'preact/hooks';
 import {asApiError, type ApiError, type Schemas} from '../../api/client';
+import {levels, type Quality} from '../../state/forms';
 import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
@@ -9,7 +10,6 @@ import {Field} from '../../ui/field';
 import {counted} from '../../ui/say';
 import {planChosen} from '../batches/choose';
 import {queueJob} from '../jobs/state';
-import {qualities, type Quality} from '../jobs/ladder';
 import {change} from './edits';
 import {tagsIn, withTags, withoutTag, type Summary} from './metadata';
 import {tags} from './shelf';
@@ -72,7 +72,7 @@ export function BatchBar({chosen, onAll, onNone, onChanged}: BatchBarProps) {
         <Button isDisabled={isBusy || tagsIn(typed).length === 0} onClick={removeTags}>Take off</Button>
       </div>
       <div class="row ends">
-        <Choice label="Level" value={quality} options={qualities.map((value) => ({value, says: value}))} onChange={setQuality} />
+        <Choice label="Level" value={quality} options={levels().map((value) => ({value, says: value}))} onChange={setQuality} />
         <Button kind="main" isDisabled={isBusy} onClick={() => void queue((session) => ({kind: 'solve', session, quality}))}>Solve</Button>
         <Button isDisabled={isBusy} onClick={() => void queue((session) => ({kind: 'price', session}))}>Price</Button>
         <Button isDisabled={isBusy} onClick={() => void queue((session) => ({kind: 'rectify', session}))}>Rectify</Button>

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "app/jobs/export/export.h"
+#include "core/fields.h"
+
+namespace weft::app {
+
+/// What `weft export` and a job that exports are told.
+struct ExportRequest {
+  ExportOptions options;
+  bool lists = false;
+  std::string shown;  ///< a preset to print; empty: none
+  bool only_explains = false;
+};
+void describe(Fields& fields, ExportRequest& request);
+
+}  // namespace weft::app

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "app/jobs/described_fields.h"
+
+namespace weft::app {
+
+/// What `weft torture` and its job are told.
+struct TortureRequest {
+  std::filesystem::path session = "torture.weft";
+};
+
+inline void describe(Fields& fields, TortureRequest& request) {
+  describe_output(fields, request.session, "Session folder, NAME.weft, which may be there already");
+}
+
+}  // namespace weft::app

@@ -1,1 +1,0 @@
-import{u as r}from"./index-BTAeXIZE.js";function s({label:a,value:l,options:n,onChange:i}){const c=`choice-${a.toLowerCase().replace(/[^a-z]+/g,"-")}`;return r("div",{class:"field",children:[r("label",{for:c,children:a}),r("select",{id:c,value:l,onChange:e=>i(e.currentTarget.value),children:n.map(e=>r("option",{value:e.value,children:e.says},e.value))})]})}export{s as C};

@@ -1,1 +1,0 @@
-import{s as e}from"./index-BTAeXIZE.js";import{c as n}from"./plan-DGGKoUzw.js";function r(s,o){sessionStorage.setItem(n,JSON.stringify({sessions:s,calibration:o})),e("/batches?plan=chosen")}export{r as p};
