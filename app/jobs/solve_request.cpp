@@ -82,6 +82,7 @@ void describe_level(Fields& fields, SolveRequest& r) {
        .says = "What --explain said of this solve, SECONDS,DEGREES,SHARE: solve.json keeps it beside what "
                "is taken",
        .range = kNotNegative,
+       .said = Said::kAtThisMachine,
        .is_said_again = true},
       r.foretold);
   fields.require(r.foretold.empty() || (r.foretold.size() == 3 && r.foretold[2] <= 1), "foretold",

@@ -51,7 +51,8 @@ test('what is chosen is planned with its price, run, compared with what was ther
   await page.getByText('Hours are a number above 0.').waitFor();
   await page.getByLabel('Solve by').selectOption('level');
   await page.getByLabel('Level', {exact: true}).selectOption('standard');
-  await page.getByLabel('Sessions to measure').fill('1');
+  await page.getByText('Options of the batch').click();
+  await page.getByLabel('Sample').fill('1');
   assert.deepEqual(await violations(page), []);
   await page.getByRole('button', {name: 'Plan', exact: true}).click();
 
@@ -106,7 +107,8 @@ test('what a search finds is planned, what is solved already is left out, and a 
   await page.getByText('1 session', {exact: true}).waitFor();
   await page.getByRole('link', {name: 'Plan a night...'}).click();
   await page.getByRole('heading', {name: 'Plan all sessions by query wool'}).waitFor();
-  await page.getByLabel('Sessions to measure').fill('0');
+  await page.getByText('Options of the batch').click();
+  await page.getByLabel('Sample').fill('0');
   await page.getByRole('button', {name: 'Plan', exact: true}).click();
   await page.getByText('1 have this solve already').waitFor({timeout: working_ms});
   assert.equal(await page.getByRole('button', {name: 'Run', exact: true}).isDisabled(), true);

@@ -6734,8 +6734,6 @@ export interface components {
             within_s?: number;
             /** @description Choose the cheapest level expected to be so many degrees off at most */
             to_deg?: number;
-            /** @description What --explain said of this solve, SECONDS,DEGREES,SHARE: solve.json keeps it beside what is taken */
-            foretold?: number[];
             /** @description LEDs or photographs to solve from, numbered from 1: 1,4,7; default all */
             lights?: number[];
             /** @description Calibration folder; default the session's own; below the rig file's folder */
@@ -6775,7 +6773,7 @@ export interface components {
              * @default false
              */
             condition?: boolean;
-        } & (unknown & unknown & unknown & unknown & unknown & unknown & unknown & {
+        } & (unknown & unknown & unknown & unknown & unknown & {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}

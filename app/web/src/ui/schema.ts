@@ -65,12 +65,17 @@ function fieldOf(name: string, property: unknown, isNeeded: boolean): SchemaFiel
   };
 }
 
+/** What every request says: its kind, and its name. */
+function isOfEvery(name: string, property: unknown): boolean {
+  return name === 'request_id' || (name === 'kind' && textsIn(property, 'enum').length === 1);
+}
+
 /** What cannot be typed, as a recipe, is left out. */
 export function schemaOf(document: unknown): Schema {
   const needed = textsIn(document, 'required');
   const properties = fieldsOf(fieldsOf(document)['properties']);
   const fields = Object.entries(properties).flatMap(([name, property]) =>
-    name === 'kind' || name === 'request_id' ? [] : (fieldOf(name, property, needed.includes(name)) ?? []),
+    isOfEvery(name, property) ? [] : (fieldOf(name, property, needed.includes(name)) ?? []),
   );
   const apart = listIn(document, 'allOf').flatMap((rule) => {
     const [one, other] = isFields(rule) ? textsIn(rule['not'], 'required') : [];

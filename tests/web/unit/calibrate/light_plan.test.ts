@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {describe, expect, test} from 'vitest';
-import {lightPlanOf, requestOfPlan, signed} from '../../../../app/web/src/screens/calibrate/light_plan';
+import {lightPlanOf, signed} from '../../../../app/web/src/screens/calibrate/light_plan';
 
 const row = (name: string, sigma: object, more: object = {}) => ({
   name, what: `${name} of it`, sigma, least_sigma: {}, observable: false, unsolved_share: 0, extra_shots: 0, extra_seconds: 0, degrees_won: 0, ...more,
@@ -26,11 +26,6 @@ describe('a plan of lights', () => {
     expect(lightPlanOf({cloth: {name: 'cotton'}, rows: [row('as-it-is', {normal_deg: 1})]})?.strength).toBe('');
     expect(lightPlanOf(null)).toBeNull();
     expect(lightPlanOf({rows: []})).toBeNull();
-  });
-
-  test('is asked for by a cloth or by a roughness, never by both', () => {
-    expect(requestOfPlan({cloth: 'wool', roughness: '0.3', f0: '0.04', aim: 'all'})).toEqual({kind: 'rig_plan', cloth: 'wool', aim: 'all'});
-    expect(requestOfPlan({cloth: 'typed', roughness: '0.3', f0: '0.04', aim: 'f0'})).toEqual({kind: 'rig_plan', roughness: 0.3, f0: 0.04, aim: 'f0'});
   });
 });
 

@@ -18,12 +18,9 @@ export interface Wish {
   quality: string;
   hours: string;
   degrees: string;
-  /** Empty: all are solved. */
-  leastChange: string;
-  sample: string;
 }
 
-export const firstWish: Wish = {aim: 'level', quality: 'standard', hours: '8', degrees: '1', leastChange: '', sample: '50'};
+export const firstWish: Wish = {aim: 'level', quality: 'standard', hours: '8', degrees: '1'};
 
 /** Where a selection is kept for the form, for as long as the tab is open: an address has no room for it. */
 export const chosenKey = 'weft-plan';
@@ -47,24 +44,18 @@ function above(text: string): number | null {
 }
 
 /** The request; or what is wrong with the wish, as a sentence. */
-export function requestOf(scope: Scope, {aim, quality, hours, degrees, leastChange, sample}: Wish, said: Said = {}): Schemas['BatchPlanJob'] | string {
+export function requestOf(scope: Scope, {aim, quality, hours, degrees}: Wish, said: Said = {}): Schemas['BatchPlanJob'] | string {
   const hours_h = above(hours);
   const to_deg = above(degrees);
-  const least_change_deg = above(leastChange);
-  const count = sample.trim() === '' ? NaN : Number(sample);
   if ('sessions' in scope && scope.sessions.length === 0) return 'Choose sessions in the library first.';
   if (aim === 'hours' && hours_h === null) return 'Hours are a number above 0.';
   if (aim === 'degrees' && to_deg === null) return 'Degrees are a number above 0.';
-  if (leastChange.trim() !== '' && least_change_deg === null) return 'The least change is a number of degrees above 0.';
-  if (!Number.isInteger(count) || count < 0) return 'The sample is a number of sessions.';
   return {
     kind: 'batch_plan',
     ...scope,
     ...(aim === 'level' && {quality: quality as 'standard'}),
     ...(hours_h !== null && aim === 'hours' && {within_s: hours_h * 3600}),
     ...(to_deg !== null && aim === 'degrees' && {to_deg}),
-    ...(least_change_deg !== null && {least_change_deg}),
-    sample: count,
     ...said,
   };
 }

@@ -13,7 +13,7 @@ import {queueJob} from '../jobs/state';
 import {aims, firstWish, requestOf, scopeInWords, type Scope, type Wish} from './plan';
 
 /** What the form and the choice of sessions say. */
-const saidHere = ['sessions', 'find', 'quality', 'to_deg', 'within_s', 'least_change_deg', 'sample'];
+const saidHere = ['sessions', 'find', 'quality', 'to_deg', 'within_s'];
 const aimWords = {level: 'one level for all', hours: 'the best within hours', degrees: 'the cheapest to an error'};
 
 /** What a batch is to spend, or to reach. Nothing is solved before its plan was seen. */
@@ -33,8 +33,6 @@ export function PlanForm({scope}: {scope: Scope}) {
         {wish.aim === 'level' && <Choice label="Level" value={wish.quality} options={levels().map((value) => ({value, says: value}))} onChange={put('quality')} />}
         {wish.aim === 'hours' && <Field label="Hours" type="number" value={wish.hours} onInput={put('hours')} />}
         {wish.aim === 'degrees' && <Field label="Mean error" unit="°" type="number" value={wish.degrees} onInput={put('degrees')} />}
-        <Field label="Leave out what turns by less than" unit="°" type="number" value={wish.leastChange} onInput={put('leastChange')} />
-        <Field label="Sessions to measure" type="number" value={wish.sample} onInput={put('sample')} />
       </div>
       <More of="the batch" schema={formOf('batch_plan')} wish={said} onWish={setSaid} without={saidHere} />
       {typeof request === 'string' && <p class="dim" role="status">{request}</p>}

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one more LED, one moved or polarisers would tell of a cloth, as a job `rig_plan` found out.
-import type {Schemas} from '../../api/client';
-import type {Wish} from '../../ui/schema';
 import {fieldsOf, listIn, numberIn, textIn, textsIn} from '../../ui/fields';
-
-type Request = Schemas['RigPlanJob'];
-export type Cloth = NonNullable<Request['cloth']>;
-export type Aim = NonNullable<Request['aim']>;
 
 export interface LightPlan {
   rig: string;
@@ -68,11 +62,4 @@ export function signed(value: number | null, decimals = 0): string {
   if (value === null) return '-';
   const text = value.toFixed(decimals);
   return Number(text) > 0 ? `+${text}` : text.replace(/^-(?=[0.]*$)/, '');
-}
-
-/** What a person chose, as the request of a job. A lobe of a typed roughness is in place of a named cloth. */
-export function requestOfPlan(choice: {cloth: Cloth | 'typed'; roughness: string; f0: string; aim: Aim; wish?: Wish}): Request {
-  const {cloth, roughness, f0, aim, wish} = choice;
-  const lobe = cloth === 'typed' ? {roughness: Number(roughness), f0: Number(f0)} : {cloth};
-  return {kind: 'rig_plan', ...lobe, aim, ...wish};
 }

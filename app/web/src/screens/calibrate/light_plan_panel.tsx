@@ -4,53 +4,29 @@ import {useState} from 'preact/hooks';
 import {formOf} from '../../state/forms';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
-import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
-import {Field} from '../../ui/field';
 import {Mark} from '../../ui/mark';
 import {age} from '../../ui/say';
-import {type Wish, wordsOf} from '../../ui/schema';
-import {More} from '../../ui/schema_form';
+import type {Wish} from '../../ui/schema';
+import {SchemaForm} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
 import {Table} from '../../ui/table';
 import {durationOf} from '../../ui/words';
 import {errorOf} from '../jobs/price';
 import {hasEnded, type Job} from '../jobs/queue';
 import {cancel, jobs, queueJob} from '../jobs/state';
-import {lightPlanOf, requestOfPlan, signed, type Aim, type Cloth, type LightPlan, type LightRow} from './light_plan';
-
-const aims: Record<Aim, string> = {all: 'all of it', normal: 'normals', alpha: 'roughness', f0: 'strength of the gloss'};
-const saidHere = ['cloth', 'roughness', 'f0', 'aim'];
-
-function cloths(): {value: Cloth | 'typed'; says: string}[] {
-  const named = wordsOf(formOf('rig_plan'), 'cloth').map((value) => ({value: value as Cloth, says: value.replace('-', ' ')}));
-  return [...named, {value: 'typed', says: 'of this roughness'}];
-}
-
-function aimOptions() {
-  return (Object.keys(aims) as Aim[]).map((value) => ({value, says: aims[value]}));
-}
+import {lightPlanOf, signed, type LightPlan, type LightRow} from './light_plan';
 
 export function LightPlanPanel() {
-  const [cloth, setCloth] = useState<Cloth | 'typed'>('satin');
-  const [roughness, setRoughness] = useState('0.3');
-  const [f0, setF0] = useState('0.04');
-  const [aim, setAim] = useState<Aim>('all');
   const [wish, setWish] = useState<Wish>({});
-  const plan = useAction(() => queueJob(requestOfPlan({cloth, roughness, f0, aim, wish})));
+  const plan = useAction(() => queueJob({kind: 'rig_plan', ...wish}));
   const planned = jobs.value.find((job) => job.kind === 'rig_plan' && job.state !== 'cancelled');
   const isBusy = planned !== undefined && !hasEnded(planned);
   return (
     <section class="panel light-plan" aria-labelledby="light-plan-title">
       <h2 id="light-plan-title">Which light to add</h2>
-      <div class="row">
-        <Choice label="Cloth" value={cloth} options={cloths()} onChange={setCloth} />
-        {cloth === 'typed' && <Field label="Roughness" type="number" value={roughness} onInput={setRoughness} />}
-        {cloth === 'typed' && <Field label="Strength" type="number" value={f0} onInput={setF0} />}
-        <Choice label="Best for" value={aim} options={aimOptions()} onChange={setAim} />
-        <Button isDisabled={plan.isBusy || isBusy} onClick={() => void plan.run()}>Say what each light tells</Button>
-      </div>
-      <More of="the plan" schema={formOf('rig_plan')} wish={wish} onWish={setWish} without={saidHere} />
+      <SchemaForm schema={formOf('rig_plan')} wish={wish} onWish={setWish} />
+      <div><Button isDisabled={plan.isBusy || isBusy} onClick={() => void plan.run()}>Say what each light tells</Button></div>
       <Complaint error={plan.complaint} />
       {planned && <Planned job={planned} />}
     </section>

@@ -72,7 +72,7 @@ function StagePanel({walk, stage}: {walk: Walk; stage: Stage}) {
   const isBegun = set?.photographs.some((photograph) => photograph.used) ?? false;
   const trial = set && trialOf(walk, stage, set, known.value);
   const soFar = trial && <SoFar key={trial.request_id} trial={trial} />;
-  const calculation = !stage.is_aside && <Calculation walk={walk} stage={stage} isEnough={stage.is_photographed ?? set?.done ?? false} />;
+  const calculation = !stage.is_aside && <Calculation walk={walk} stage={stage} isEnough={stage.is_photographed || (set?.done ?? false)} />;
   return (
     <>
       {isToPhotograph && set === null && <Begin walk={walk} stage={stage} />}

@@ -22,7 +22,7 @@ import {hasEnded, type Job} from './queue';
 import {jobs, queueJob} from './state';
 
 /** What a level that was priced says. */
-const saidHere = ['session', 'quality', 'method', 'within_s', 'to_deg', 'foretold'];
+const saidHere = ['session', 'quality', 'method', 'within_s', 'to_deg'];
 
 export function Price({session}: {session: string}) {
   const [complaint, complain] = useState<ApiError | null>(null);
@@ -35,12 +35,7 @@ export function Price({session}: {session: string}) {
     queueJob(request).catch((error: unknown) => complain(asApiError(error)));
   };
   const price = () => queue({kind: 'price', session});
-  /** What was foretold is kept beside what it takes. */
-  const solve = (quality: Quality) => {
-    const level = levels.find((each) => each.quality === quality);
-    const foretold = level && {foretold: [level.seconds, level.predicted_deg, level.solved]};
-    queue({kind: 'solve', session, quality, ...foretold, ...wish});
-  };
+  const solve = (quality: Quality) => queue({kind: 'solve', session, quality, ...wish});
 
   return (
     <section class="panel price" aria-labelledby="price-title">
