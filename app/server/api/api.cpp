@@ -12,6 +12,42 @@
 namespace weft::app {
 namespace {
 
+Json content_of(const Json& schema) {
+  return {
+      {"application/json", {{"schema", {{"$ref", "#/components/schemas/" + schema.get<std::string>()}}}}}};
+}
+
+/// {"json": SCHEMA} is a document of that schema.
+void write_out(Json& body) {
+  const auto schema = body.find("json");
+  if (schema == body.end()) return;
+  Json content = content_of(*schema);
+  body.erase("json");
+  body["content"] = std::move(content);
+}
+
+/// The files of the resources say shortly what calls have alike: an error is a sentence, and how every call
+/// may be refused before it is looked at stands here.
+void write_out_operation(Json& operation) {
+  Json& responses = operation["responses"];
+  for (auto& [code, response] : responses.items()) {
+    if (response.is_string())
+      response = {{"description", response}, {"content", content_of("ErrorDocument")}};
+    write_out(response);
+  }
+  const auto refused = [&](const char* code, const char* response) {
+    responses[code] = {{"$ref", std::string("#/components/responses/") + response}};
+  };
+  refused("400", "Unreadable");
+  if (!operation.contains("security")) refused("401", "NoToken");
+  refused("403", "ForeignOrigin");
+  refused("421", "ForeignHost");
+  if (operation.contains("requestBody") && operation["requestBody"].contains("json")) {
+    operation["requestBody"]["required"] = true;
+    write_out(operation["requestBody"]);
+  }
+}
+
 /// Whether a call asks something of board or camera.
 bool is_of_devices(const Route& route) {
   const std::string_view path = std::string_view(route.path).substr(std::string_view("/api/v1/").size());
@@ -48,6 +84,9 @@ Json api_description() {
     schemas.update(part["schemas"]);
   }
   schemas.update(job_schemas());
+  for (auto& [path, item] : paths.items()) {
+    for (auto& [method, operation] : item.items()) write_out_operation(operation);
+  }
   whole["components"]["schemas"] = std::move(schemas);
   whole["paths"] = std::move(paths);
   return whole;

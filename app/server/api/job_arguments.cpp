@@ -288,7 +288,7 @@ void JobSchema::take(const Field& field, Value value) {
   Json property = property_of(field, value);
   if (!is_path) {
     Field told = field;
-    if (option_of(field).starts_with('!')) told.says = "False: " + field.says;
+    if (option_of(field).starts_with('!')) told.says = "Off: " + field.says;
     return add(told, std::move(property));
   }
   const auto named = [&](const char* what, const char* says) {

@@ -6759,12 +6759,12 @@ export interface components {
              */
             tile_height?: number;
             /**
-             * @description False: Write no pictures
+             * @description Off: Write no pictures
              * @default true
              */
             previews?: boolean;
             /**
-             * @description False: Leave the blur of the lens as it is
+             * @description Off: Leave the blur of the lens as it is
              * @default true
              */
             deblur?: boolean;
@@ -7198,7 +7198,7 @@ export interface components {
              */
             compress?: "none" | "zip" | "piz";
             /**
-             * @description False: No preview.png
+             * @description Off: No preview.png
              * @default true
              */
             pictures?: boolean;

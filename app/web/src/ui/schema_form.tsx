@@ -52,7 +52,7 @@ function Line({id, field, value, keeper, onValue}: LineProps) {
   if (field.holds === 'word') {
     const unsaid = field.otherwise === null ? 'as it is' : String(field.otherwise);
     const options = [{value: '', says: unsaid}, ...field.words.filter((word) => word !== field.otherwise).map((word) => ({value: word, says: word}))];
-    return <Choice label={label} value={String(value ?? '')} options={options} onChange={(word) => onValue(word === '' ? null : word)} />;
+    return <Choice label={label} says={field.says} value={String(value ?? '')} options={options} onChange={(word) => onValue(word === '' ? null : word)} />;
   }
   if (field.each) return <List field={field} schema={field.each} values={(value ?? []) as Wish[]} onValue={onValue} />;
   const range = rangeInWords(field);
