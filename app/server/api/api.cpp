@@ -26,9 +26,15 @@ void write_out(Json& body) {
   body["content"] = std::move(content);
 }
 
-/// The files of the resources say shortly what calls have alike: an error is a sentence, and how every call
-/// may be refused before it is looked at stands here.
-void write_out_operation(Json& operation) {
+/// The files of the resources say shortly what calls have alike: a parameter that several have is named (of
+/// openapi.json), an error is a sentence, and how every call may be refused before it is looked at stands
+/// here.
+void write_out_operation(Json& operation, const Json& parameters) {
+  if (operation.contains("parameters")) {
+    for (Json& parameter : operation["parameters"]) {
+      if (parameter.is_string()) parameter = parameters.at(parameter.get<std::string>());
+    }
+  }
   Json& responses = operation["responses"];
   for (auto& [code, response] : responses.items()) {
     if (response.is_string())
@@ -72,6 +78,8 @@ Result<Json> command_in(const RigParts& parts, const Call& call) {
 
 Json api_description() {
   Json whole = Json::parse(common_description());
+  const Json parameters = whole["parameters"];
+  whole.erase("parameters");
   Json paths = Json::object(), schemas = whole["components"]["schemas"];
   for (const char* resource :
        {batches_description(), calibrations_description(), control_description(), devices_description(),
@@ -85,7 +93,7 @@ Json api_description() {
   }
   schemas.update(job_schemas());
   for (auto& [path, item] : paths.items()) {
-    for (auto& [method, operation] : item.items()) write_out_operation(operation);
+    for (auto& [method, operation] : item.items()) write_out_operation(operation, parameters);
   }
   whole["components"]["schemas"] = std::move(schemas);
   whole["paths"] = std::move(paths);
