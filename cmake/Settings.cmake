@@ -61,8 +61,8 @@ weft_precompile(weft_precompiled_tests
   OPTIONS ${WEFT_TEST_OPTIONS})
 
 # weft_library(NAME DEPENDS ... SOURCES ...): one folder, one target. PLAIN: without the precompiled headers, for C and
-# for what is compiled with other options. APART: each file by itself. With WEFT_BUILT a library that no sanitizer is to watch is not compiled: its
-# archive is that of this other build.
+# for what is compiled with other options. APART: each file by itself. With WEFT_BUILT a library that no sanitizer is to
+# watch is not compiled: its archive is that of this other build.
 function(weft_library name)
   cmake_parse_arguments(ARG "PLAIN;APART" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;OPTIONS" ${ARGN})
   cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE folder)

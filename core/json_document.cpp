@@ -38,22 +38,44 @@ bool is_triple(const Json& list) {
          });
 }
 
+// The first, quoted, of a text that has one.
+std::string key_said_twice(std::string_view text) {
+  std::vector<std::set<std::string>> keys;  // of each object that is open
+  std::string twice;
+  const auto look = [&](int, Json::parse_event_t event, const Json& read) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    const bool is_again = event == Json::parse_event_t::key && !keys.back().insert(read).second;
+    if (is_again && twice.empty()) twice = beginning_of(read);
+    return true;
+  };
+  const Json read = Json::parse(text, look, /*allow_exceptions=*/false);
+  return read.is_discarded() ? "" : twice;
+}
+
 }  // namespace
 
 ParsedJson parse_json(std::string_view text) {
   ParsedJson parsed;
-  std::vector<std::set<std::string>> keys;  // of each object that is open
-  const auto look = [&](int depth, Json::parse_event_t event, const Json& said) {
-    if (event == Json::parse_event_t::object_start) keys.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys.pop_back();
-    const bool is_twice = event == Json::parse_event_t::key && !keys.back().insert(said).second;
-    if (parsed.why.empty() && depth > kMostDepth)
-      parsed.why = fmt::format("it is nested over {} deep", kMostDepth);
-    if (parsed.why.empty() && is_twice) parsed.why = fmt::format("it says {} twice", beginning_of(said));
-    return depth <= kMostDepth;
+  std::vector<std::size_t> keys;  // said of each object that is open
+  bool is_too_deep = false, is_twice = false;
+  const auto look = [&](int depth, Json::parse_event_t event, const Json& read) {
+    is_too_deep = is_too_deep || depth > kMostDepth;
+    if (event == Json::parse_event_t::object_start) keys.push_back(0);
+    if (event == Json::parse_event_t::key) ++keys.back();
+    if (event != Json::parse_event_t::object_end || is_too_deep) return !is_too_deep;
+    is_twice = is_twice || read.size() != keys.back();
+    keys.pop_back();
+    return true;
   };
   parsed.document = Json::parse(text, look, /*allow_exceptions=*/false);
-  if (parsed.why.empty() && parsed.document.is_discarded()) parsed.why = "it is not valid JSON";
+  if (is_too_deep) {
+    parsed.why = fmt::format("it is nested over {} deep", kMostDepth);
+  } else if (parsed.document.is_discarded()) {
+    parsed.why = "it is not valid JSON";
+  } else if (is_twice) {
+    parsed.why = fmt::format("it says {} twice", key_said_twice(text));
+  }
   return parsed;
 }
 

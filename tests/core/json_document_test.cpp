@@ -72,6 +72,14 @@ TEST(ReadJson, SurvivesAnyDepthOfLists) {
   EXPECT_TRUE(said == "read" || said == "refused") << said;
 }
 
+TEST(ReadJson, RefusesAKeyThatStandsTwiceInOneObjectAndNamesIt) {
+  EXPECT_EQ(parse_json(R"({"led": 1, "shots": [{"led": 1}, {"led": 2}], "of": {"led": 3}})").why, "");
+  EXPECT_EQ(parse_json(R"({"led": 1, "shots": [{"led": 1, "x": {"led": 1}, "led": 2}]})").why,
+            "it says \"led\" twice");
+  EXPECT_EQ(parse_json(R"({"a": 1, "a": 1})").why, "it says \"a\" twice");
+  EXPECT_EQ(parse_json(R"({"a": 1, "a": )").why, "it is not valid JSON");
+}
+
 TEST(WriteJson, KeepsTheOrderOfKeysAndEveryBitOfANumber) {
   const ScratchFolder folder;
   const Json document = {{"schema", "a/1"}, {"z", 0.1},  {"b", 1.0 / 3},
