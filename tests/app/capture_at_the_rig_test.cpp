@@ -166,7 +166,7 @@ TEST_F(CaptureAtTheRig, RefusesWhatItCannotWorkOn) {
   };
   EXPECT_THAT(refusal({{"part", "stone"}}), HasSubstr("board, response"));
   EXPECT_THAT(refusal({{"part", "board"}}), HasSubstr("nobody said what the board is"));
-  EXPECT_THAT(refusal({{"part", "board"}, {"description", "squares_x = 1"}}), HasSubstr("squares_y"));
+  EXPECT_THAT(refusal({{"part", "board"}, {"description", "squares_x = 9"}}), HasSubstr("squares_y"));
   EXPECT_THAT(refusal({{"part", "board"}, {"name", "../x"}, {"description", ""}}),
               HasSubstr("no name of a set"));
   EXPECT_THAT(refusal({{"part", "response"}, {"from", "/nowhere"}}), HasSubstr("nowhere"));
