@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/calibration.h"
+#include "core/fields.h"
+#include "core/toml/field_toml.h"
 #include "core/toml/toml_keys.h"
 
 namespace weft::capture {
@@ -18,112 +22,46 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPage = "docs/rig.md";
 constexpr int kMostLeds = 10;
+constexpr double kFarthest_mm = 1e5;
+constexpr NumberRange kExposure_us = {1, 1e9};
 
 /// A path of the file, made absolute; empty stays empty.
 fs::path beside(const fs::path& file, const std::string& path) {
   return path.empty() ? fs::path() : (file.parent_path() / path).lexically_normal();
 }
 
-std::string place(const fs::path& file, const char* table) {
-  return file.string() + ": [" + table + "]";
+Vec3 vec3(const std::vector<double>& xyz) {
+  return {xyz[0], xyz[1], xyz[2]};
 }
 
-Result<NearLight> read_led(const toml::table& table, std::string where) {
-  TomlKeys keys(table, std::move(where), kPage);
-  keys.know({"position_mm", "aim", "mu"});
-  NearLight led;
-  const std::vector<double> at = keys.numbers("position_mm", 3, 3);
-  const std::vector<double> aim = keys.has("aim") ? keys.numbers("aim", 3, 3) : std::vector<double>();
-  led.mu = keys.number_or("mu", 1, 0, 100);
-  if (!at.empty()) led.position_mm = {at[0], at[1], at[2]};
-  if (!at.empty() && !(at[2] >= 1 && length(led.position_mm) < 1e5))
-    keys.reject("position_mm", "it must be at least 1 mm above the table");
-  led.aim = aim.empty() ? -1.0 * led.position_mm : Vec3{aim[0], aim[1], aim[2]};
-  if (!(length(led.aim) > 0)) keys.reject("aim", "it has no length");
-  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
-  led.aim = normalized(led.aim);
-  return led;
+bool is_plain_name(const std::string& name) {
+  return !name.empty() && name.find('/') == std::string::npos;
 }
 
-Result<void> read_leds(TomlKeys& keys, Rig& rig) {
-  if (keys.has("led")) {
-    const std::vector<const toml::table*> leds = keys.tables("led");
-    if (Result<void> ok = keys.status(); !ok) return ok;
-    rig.lights.emplace();
-    for (std::size_t k = 0; k < leds.size(); ++k) {
-      Result<NearLight> led = read_led(*leds[k], fmt::format("{}: LED {}", rig.file.string(), k + 1));
-      if (!led) return std::move(led).error();
-      rig.lights->leds.push_back(*led);
-    }
-    rig.leds = std::min(static_cast<int>(leds.size()), kMostLeds);
-  }
-  rig.leds = keys.integer_or("leds", rig.leds, 1, kMostLeds);
-  if (rig.lights && keys.has("leds") && static_cast<std::size_t>(rig.leds) != rig.lights->leds.size())
-    keys.reject("leds", fmt::format("there are {} [[led]]", rig.lights->leds.size()));
-  return keys.status();
-}
+/// An LED as [[led]] has it.
+struct LedEntry {
+  std::vector<double> position_mm, aim;
+  double mu = 1;
+};
 
-Result<void> read_board(const toml::table& table, Rig& rig) {
-  TomlKeys keys(table, place(rig.file, "board"), kPage);
-  keys.know({"port"});
-  rig.board.port = keys.text_or("port", rig.board.port);
-  if (rig.board.port.empty()) keys.reject("port", "it is empty");
-  return keys.status();
-}
-
-Result<void> read_camera(const toml::table& table, Rig& rig) {
-  TomlKeys keys(table, place(rig.file, "camera"), kPage);
-  keys.know({"profile", "port", "serial"});
-  rig.camera.profile = keys.text_or("profile", rig.camera.profile);
-  if (rig.camera.profile.ends_with(".toml"))
-    rig.camera.profile = beside(rig.file, rig.camera.profile).string();
-  rig.camera.port = keys.text_or("port", rig.camera.port);
-  rig.camera.serial = keys.text_or("serial", rig.camera.serial);
-  const bool known =
-      rig.camera.port.empty() || rig.camera.port.starts_with("usb:") || rig.camera.port.starts_with("ptpip:");
-  if (!known) keys.reject("port", "it must be empty, usb:BUS,DEVICE or ptpip:ADDRESS:PORT:PORT");
-  return keys.status();
-}
-
-Result<void> read_below(const toml::table& table, Rig& rig) {
-  TomlKeys keys(table, place(rig.file, "below"), kPage);
-  keys.know({"exposure_us"});
-  rig.below.emplace();
-  if (keys.has("exposure_us")) rig.below->exposure_us = keys.number("exposure_us", 1, 1e9);
-  return keys.status();
-}
-
-Result<void> read_polariser(const toml::table& table, Rig& rig) {
-  TomlKeys keys(table, place(rig.file, "polariser"), kPage);
-  keys.know({"states", "settle_s"});
-  for (const std::string& name : keys.texts_or("states", {})) {
-    const std::optional<Polariser> state = polariser_of(name);
-    if (!state || state == Polariser::kNone || std::ranges::count(rig.polariser.states, *state) > 0) {
-      keys.reject("states", "it must be \"crossed\", \"parallel\" or both");
-      break;
-    }
-    rig.polariser.states.push_back(*state);
-  }
-  rig.polariser.settle_s = keys.number_or("settle_s", rig.polariser.settle_s, 0, 60);
-  return keys.status();
-}
-
-Result<void> read_scan(const toml::table& table, Rig& rig) {
-  TomlKeys keys(table, place(rig.file, "scan"), kPage);
-  keys.know({"calibration", "iso", "f_number", "exposure_us", "cloth_height_mm", "sessions", "copy",
-             "session_name"});
-  Rig::Scan& scan = rig.scan;
-  scan.calibration = beside(rig.file, keys.text_or("calibration", ""));
-  scan.iso = keys.number_or("iso", scan.iso, 1, 1e6);
-  scan.f_number = keys.number_or("f_number", scan.f_number, 0.5, 128);
-  if (keys.has("exposure_us")) scan.exposure_us = keys.number("exposure_us", 1, 1e9);
-  scan.cloth_height_mm = keys.number_or("cloth_height_mm", 0, -1000, 1000);
-  scan.sessions = beside(rig.file, keys.text_or("sessions", scan.sessions.string()));
-  scan.copy = beside(rig.file, keys.text_or("copy", ""));
-  scan.session_name = keys.text_or("session_name", scan.session_name);
-  if (scan.session_name.empty() || scan.session_name.find('/') != std::string::npos)
-    keys.reject("session_name", "it must be the name of one folder");
-  return keys.status();
+void describe(Fields& fields, LedEntry& led) {
+  fields.value({.name = "position_mm",
+                .says = "Where it is in the rig frame, mm",
+                .need = Need::kMustSay,
+                .fewest = 3,
+                .most = 3},
+               led.position_mm);
+  const std::vector<double>& at = led.position_mm;
+  fields.require(at.size() != 3 || (at[2] >= 1 && length(vec3(at)) < kFarthest_mm), "position_mm",
+                 "must be at least 1 mm above the table");
+  fields.value({.name = "aim",
+                .says = "Its axis; default at the table's centre",
+                .need = Need::kUnlessEmpty,
+                .fewest = 3,
+                .most = 3},
+               led.aim);
+  fields.require(led.aim.size() != 3 || length(vec3(led.aim)) > 0, "aim", "must have a length");
+  fields.value({"mu", "How narrow its lobe is, cosine to this power", {0, 100}}, led.mu);
 }
 
 bool is_host_name(std::string_view name) {
@@ -141,35 +79,127 @@ bool is_origin(std::string_view origin) {
          (colon == host.npos || host.find_first_not_of("0123456789", colon + 1) == host.npos);
 }
 
-Result<void> read_daemon(const toml::table& table, Rig& rig) {
-  TomlKeys keys(table, place(rig.file, "daemon"), kPage);
-  keys.know({"host", "port", "token", "look_token", "names", "origins", "archives", "preview", "screen",
-             "page_dark_ms", "state", "virtual_control"});
-  rig.daemon.host = keys.text_or("host", rig.daemon.host);
-  rig.daemon.port = keys.integer_or("port", rig.daemon.port, 0, 65535);
-  rig.daemon.token = beside(rig.file, keys.text_or("token", ""));
-  rig.daemon.look_token = beside(rig.file, keys.text_or("look_token", ""));
-  if (!rig.daemon.look_token.empty() && rig.daemon.token.empty())
-    keys.reject("look_token", "it needs daemon.token beside it: without one everybody operates");
-  rig.daemon.names = keys.texts_or("names", {});
-  for (const std::string& name : rig.daemon.names) {
-    if (!is_host_name(name)) keys.reject("names", "each is a name without a port, as in [\"rig.local\"]");
-  }
-  for (const std::string& archive : keys.texts_or("archives", {}))
-    rig.daemon.archives.push_back(beside(rig.file, archive));
-  rig.daemon.preview = keys.flag_or("preview", rig.daemon.preview);
-  const std::string screen = keys.text_or("screen", "seen");
-  if (screen != "seen" && screen != "unseen")
-    keys.reject("screen", "it is \"seen\" or \"unseen\" by the cloth");
-  rig.daemon.is_screen_seen = screen == "seen";
-  rig.daemon.page_dark_ms = keys.integer_or("page_dark_ms", rig.daemon.page_dark_ms, 0, 5000);
-  rig.daemon.origins = keys.texts_or("origins", {});
-  for (const std::string& origin : rig.daemon.origins) {
-    if (!is_origin(origin)) keys.reject("origins", "each is as in [\"https://rig.local\"], without a path");
-  }
-  rig.daemon.virtual_control = beside(rig.file, keys.text_or("virtual_control", ""));
-  rig.daemon.state = beside(rig.file, keys.text_or("state", rig.name + ".state"));
-  return keys.status();
+}  // namespace
+
+void describe(Fields& fields, Rig::Board& board) {
+  fields.value({"port", "Any name that leads to the LED board"}, board.port);
+  fields.require(!board.port.empty(), "port", "must not be empty");
+}
+
+void describe(Fields& fields, Rig::Camera& camera) {
+  fields.value({"profile", "Built in, or a profile beside this file"}, camera.profile);
+  fields.value({"port", "usb:BUS,DEVICE or ptpip:ADDRESS:PORT:PORT; empty: found on USB"}, camera.port);
+  const std::string& port = camera.port;
+  fields.require(port.empty() || port.starts_with("usb:") || port.starts_with("ptpip:"), "port",
+                 "must be empty, usb:BUS,DEVICE or ptpip:ADDRESS:PORT:PORT");
+  fields.value({"serial", "Of the body; empty: the calibration's"}, camera.serial);
+}
+
+void describe(Fields& fields, Rig::Below& below) {
+  fields.value({"exposure_us", "Of the light below, us; default metered for each cloth", kExposure_us},
+               below.exposure_us);
+}
+
+void describe(Fields& fields, Rig::PolariserFilm& film) {
+  std::vector<std::string> names;
+  for (const Polariser state : film.states) names.emplace_back(name_of(state));
+  fields.value({.name = "states",
+                .says = "What each scan photographs the LEDs in, one after the other; the first is solved",
+                .need = Need::kUnlessEmpty,
+                .words = {"crossed", "parallel"}},
+               names);
+  fields.require(names.size() < 2 || names[0] != names[1], "states",
+                 "must be \"crossed\", \"parallel\" or both");
+  film.states.clear();
+  for (const std::string& name : names) film.states.push_back(polariser_of(name).value_or(Polariser::kNone));
+  fields.value({"settle_s", "From the command to turn until it stands, s", {0, 60}}, film.settle_s);
+}
+
+void describe(Fields& fields, Rig::Scan& scan) {
+  fields.value({"calibration", "Its folder"}, scan.calibration);
+  fields.value({"iso", "Of all photographs", {1, 1e6}}, scan.iso);
+  fields.value({"f_number", "Of the lens", {0.5, 128}}, scan.f_number);
+  fields.value({"exposure_us", "Of each LED, us; default metered for each cloth", kExposure_us},
+               scan.exposure_us);
+  fields.value({"cloth_height_mm", "Of the cloth's surface above the table, mm", {-1000, 1000}},
+               scan.cloth_height_mm);
+  fields.value({"sessions", "Folder of sessions without a path of their own"}, scan.sessions);
+  fields.value({"copy", "Folder of a second copy of each session"}, scan.copy);
+  fields.value({"session_name", "Template of {date}, {fabric}, {count}"}, scan.session_name);
+  fields.require(is_plain_name(scan.session_name), "session_name", "must be the name of one folder");
+}
+
+void describe(Fields& fields, Rig::Daemon& daemon) {
+  fields.value({"host", "Address that it listens on; another one needs a token"}, daemon.host);
+  fields.value({"port", "That it listens on; 0: any free one", {0, 65535}}, daemon.port);
+  fields.value({"token", "File that holds it; empty: none"}, daemon.token);
+  fields.value({"look_token", "File with that of who may only look"}, daemon.look_token);
+  fields.require(daemon.look_token.empty() || !daemon.token.empty(), "look_token",
+                 "needs daemon.token beside it: without one everybody operates");
+  fields.value({"names", "More names that lead to it"}, daemon.names);
+  fields.require(std::ranges::all_of(daemon.names, is_host_name), "names",
+                 "must be names without a port, as in [\"rig.local\"]");
+  fields.value({"origins", "Of pages behind a proxy"}, daemon.origins);
+  fields.require(std::ranges::all_of(daemon.origins, is_origin), "origins",
+                 "must be as in [\"https://rig.local\"], without a path");
+  fields.value({"archives", "More folders of sessions, to look at"}, daemon.archives);
+  fields.value({"preview", "Each finished scan is solved once quickly"}, daemon.preview);
+  std::string screen = daemon.is_screen_seen ? "seen" : "unseen";
+  fields.value(
+      {.name = "screen", .says = "By the cloth: whether pages go black", .words = {"seen", "unseen"}},
+      screen);
+  daemon.is_screen_seen = screen == "seen";
+  fields.value({"page_dark_ms", "That pages have to become black, ms", {0, 5000}}, daemon.page_dark_ms);
+  fields.value({"virtual_control", "Socket of weft-virtual-rig; empty: a real rig"}, daemon.virtual_control);
+  fields.value({"state", "Folder for its lock, address and log"}, daemon.state);
+}
+
+namespace {
+
+/// What the file says.
+struct RigFile {
+  std::string name = "rig";
+  std::optional<int> leds;
+  std::vector<LedEntry> led;
+  Rig::Board board;
+  Rig::Camera camera;
+  std::optional<Rig::Below> below;
+  Rig::PolariserFilm polariser;
+  Rig::Scan scan;
+  Rig::Daemon daemon;
+};
+
+void describe(Fields& fields, RigFile& rig) {
+  fields.value({"name", "In every session and calibration of it"}, rig.name);
+  fields.require(is_plain_name(rig.name), "name", "must be a plain name");
+  fields.value({"leds", "How many there are; default as many as [[led]]", {1, kMostLeds}}, rig.leds);
+  fields.list({"led", "Where a tape has them"}, rig.led);
+  fields.require(rig.led.empty() || !rig.leds || static_cast<std::size_t>(*rig.leds) == rig.led.size(),
+                 "leds", fmt::format("must be that of [[led]], which is {}", rig.led.size()));
+  fields.object({"board", "The LED board"}, rig.board);
+  fields.object({"camera", "The camera"}, rig.camera);
+  fields.object({"below", "A light below the cloth"}, rig.below);
+  fields.object({"polariser", "One before the lens"}, rig.polariser);
+  fields.object({"scan", "What scans take"}, rig.scan);
+  fields.object({"daemon", "What weft serve is"}, rig.daemon);
+}
+
+NearLight light_of(const LedEntry& led) {
+  NearLight light;
+  light.position_mm = vec3(led.position_mm);
+  light.aim = normalized(led.aim.empty() ? -1.0 * light.position_mm : vec3(led.aim));
+  light.mu = led.mu;
+  return light;
+}
+
+// Of the file's folder.
+void lay_paths(Rig& rig) {
+  for (fs::path* path : {&rig.scan.calibration, &rig.scan.sessions, &rig.scan.copy, &rig.daemon.token,
+                         &rig.daemon.look_token, &rig.daemon.virtual_control, &rig.daemon.state})
+    *path = beside(rig.file, path->string());
+  for (fs::path& archive : rig.daemon.archives) archive = beside(rig.file, archive.string());
+  if (rig.camera.profile.ends_with(".toml"))
+    rig.camera.profile = beside(rig.file, rig.camera.profile).string();
 }
 
 }  // namespace
@@ -177,27 +207,25 @@ Result<void> read_daemon(const toml::table& table, Rig& rig) {
 Result<Rig> read_rig(const fs::path& file) {
   const Result<toml::table> table = read_toml(file);
   if (!table) return table.error();
+  Result<RigFile> said = read_fields<RigFile>(*table, file.string(), kPage);
+  if (!said) return std::move(said).error();
   Rig rig;
   rig.file = fs::absolute(file).lexically_normal();
-  TomlKeys keys(*table, file.string(), kPage);
-  keys.know({"name", "leds", "led", "board", "camera", "below", "polariser", "scan", "daemon"});
-  rig.name = keys.text_or("name", "rig");
-  if (rig.name.empty() || rig.name.find('/') != std::string::npos)
-    keys.reject("name", "it must be a plain name");
-  if (Result<void> ok = read_leds(keys, rig); !ok) return std::move(ok).error();
-  const toml::table& board = keys.table("board");
-  const toml::table& camera = keys.table("camera");
-  const toml::table& polariser = keys.table("polariser");
-  const toml::table& below = keys.table("below");
-  const toml::table& scan = keys.table("scan");
-  const toml::table& daemon = keys.table("daemon");
-  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
-  for (const Result<void>& read :
-       {read_board(board, rig), read_camera(camera, rig), read_polariser(polariser, rig),
-        keys.has("below") ? read_below(below, rig) : Result<void>(), read_scan(scan, rig),
-        read_daemon(daemon, rig)}) {
-    if (!read) return read.error();
+  rig.name = said->name;
+  if (!said->led.empty()) {
+    rig.lights.emplace();
+    for (const LedEntry& led : said->led) rig.lights->leds.push_back(light_of(led));
+    rig.leds = std::min(static_cast<int>(said->led.size()), kMostLeds);
   }
+  rig.leds = said->leds.value_or(rig.leds);
+  rig.board = said->board;
+  rig.camera = said->camera;
+  rig.below = said->below;
+  rig.polariser = said->polariser;
+  rig.scan = said->scan;
+  rig.daemon = said->daemon;
+  if (rig.daemon.state.empty()) rig.daemon.state = rig.name + ".state";
+  lay_paths(rig);
   return rig;
 }
 

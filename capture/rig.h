@@ -10,6 +10,10 @@
 #include "core/result.h"
 #include "core/session.h"
 
+namespace weft {
+class Fields;
+}  // namespace weft
+
 namespace weft::capture {
 
 /// What a person writes about a rig, in TOML (docs/rig.md). Paths in the file are relative to its folder.
@@ -76,6 +80,13 @@ struct Rig {
   /// Photographs and calibrations lie below it: the file's; without a file that of the sessions.
   std::filesystem::path folder() const { return file.empty() ? scan.sessions : file.parent_path(); }
 };
+
+void describe(Fields& fields, Rig::Board& board);
+void describe(Fields& fields, Rig::Camera& camera);
+void describe(Fields& fields, Rig::Below& below);
+void describe(Fields& fields, Rig::PolariserFilm& film);
+void describe(Fields& fields, Rig::Scan& scan);
+void describe(Fields& fields, Rig::Daemon& daemon);
 
 /// Reads and checks the file. kNoInput, kBadData with the key and what is allowed there.
 Result<Rig> read_rig(const std::filesystem::path& file);

@@ -89,14 +89,17 @@ void JsonReader::choose(const Field& field, Words words, std::size_t /*now*/,
 
 void JsonReader::read_inside(const Json& object, const std::string& name,
                              const std::function<void(Fields&)>& inside) {
-  JsonReader reader(object, fmt::format("{}: {}", fields_.where(), name));
+  JsonReader reader(object, fmt::format("{}: {}", fields_.where(), name), naming_);
   inside(reader);
   const Result<void> ok = reader.status();
   if (!ok && !error_) error_ = ok.error();
 }
 
 void JsonReader::enter(const Field& field, const std::function<void(Fields&)>& inside, bool /*is_default*/) {
-  if (is_said(field)) read_inside(fields_.object(field.name), field.name, inside);
+  if (!is_said(field)) return;
+  const bool is_of_people = naming_ == Naming::kOfPeople;
+  read_inside(fields_.object(field.name), is_of_people ? fmt::format("[{}]", field.name) : field.name,
+              inside);
 }
 
 void JsonReader::repeat(const Field& field, std::size_t /*count*/,
@@ -108,7 +111,8 @@ void JsonReader::repeat(const Field& field, std::size_t /*count*/,
   if (one.ends_with('s')) one.pop_back();
   resize(list.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
-    read_inside(list[i], fmt::format("{} {}", one, i), [&](Fields& each) { inside(each, i); });
+    const std::size_t number = i + (naming_ == Naming::kOfPeople ? 1 : 0);
+    read_inside(list[i], fmt::format("{} {}", one, number), [&](Fields& each) { inside(each, i); });
   }
 }
 

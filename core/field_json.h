@@ -10,10 +10,15 @@
 
 namespace weft {
 
+/// How a refusal names what is within: "shot 0" and "solver" of a program's document; "led 1" and "[scan]" of
+/// what a person wrote in TOML.
+enum class Naming { kOfPrograms, kOfPeople };
+
 /// Reads the fields of an object over the values that are there.
 class JsonReader final : public Fields {
  public:
-  JsonReader(const Json& object, std::string where) : object_(object), fields_(object, std::move(where)) {}
+  JsonReader(const Json& object, std::string where, Naming naming = Naming::kOfPrograms)
+      : object_(object), fields_(object, std::move(where)), naming_(naming) {}
 
   void require(bool holds, const char* field, const std::string& rule) override;
   void keep(Json& document) override { document = object_; }
@@ -36,6 +41,7 @@ class JsonReader final : public Fields {
 
   const Json& object_;
   JsonFields fields_;
+  Naming naming_;
   std::optional<Error> error_;  // of an object within
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -136,8 +137,19 @@ class Fields {
   /// A struct that is described itself.
   template <typename T>
   void object(const Field& field, T& value) {
+    bool is_default = false;
+    if constexpr (std::equality_comparable<T>) is_default = value == T();
     enter(
-        field, [&value](Fields& inside) { describe(inside, value); }, value == T());
+        field, [&value](Fields& inside) { describe(inside, value); }, is_default);
+  }
+  /// One that may not be there.
+  template <typename T>
+  void object(const Field& field, std::optional<T>& value) {
+    const auto walk = [&value](Fields& inside) {
+      if (!value) value.emplace();
+      describe(inside, *value);
+    };
+    enter(field, walk, !value);
   }
   /// A list of such.
   template <typename T>

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/toml/toml_json.h"
@@ -24,12 +25,14 @@ std::optional<UnknownKey> unknown_key(const Json& object, const Json& schema, co
       for (const auto& [name, property] : properties.items()) known.push_back(name);
       return UnknownKey{where, key, nearest_word(known, key)};
     }
-    const Json inside = properties[key].value("items", Json::object());
-    if (!inside.contains("properties") || !value.is_array()) continue;
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      if (!value[i].is_object()) continue;
-      auto found = unknown_key(value[i], inside, fmt::format("{}: {} {}", where, key, i + 1));
-      if (found) return found;
+    const bool is_list = value.is_array();
+    const Json inside = is_list ? properties[key].value("items", Json::object()) : properties[key];
+    if (!inside.contains("properties")) continue;
+    const Json each = is_list ? value : Json::array({value});
+    for (std::size_t i = 0; i < each.size(); ++i) {
+      if (!each[i].is_object()) continue;
+      const std::string place = is_list ? fmt::format("{} {}", key, i + 1) : fmt::format("[{}]", key);
+      if (auto found = unknown_key(each[i], inside, fmt::format("{}: {}", where, place))) return found;
     }
   }
   return {};
@@ -62,10 +65,15 @@ Result<void> read_table(const toml::table& table, const std::string& where, cons
     return unusable(fmt::format("{}: {}", unknown->where, unknown->key),
                     fmt::format("there is no such key; the nearest is {}", unknown->nearest));
   }
-  JsonReader reader(document, where);
+  JsonReader reader(document, where, Naming::kOfPeople);
   walk(reader);
   const Result<void> read = reader.status();
-  return read ? read : unusable(read.error().where, read.error().why);
+  if (read) return read;
+  // "\"port\" must be ...": the key is part of the place.
+  const auto& [place, why] = std::pair(read.error().where, read.error().why);
+  const std::size_t end = why.starts_with('"') ? why.find("\" ") : why.npos;
+  if (end == why.npos) return unusable(place, why);
+  return unusable(fmt::format("{}: {}", place, why.substr(1, end - 1)), why.substr(end + 2));
 }
 
 std::string toml_of(const Json& object) {
