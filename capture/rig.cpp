@@ -108,8 +108,8 @@ void describe(Fields& fields, Rig::PolariserFilm& film) {
                 .need = Need::kUnlessEmpty,
                 .words = {"crossed", "parallel"}},
                names);
-  fields.require(names.size() < 2 || names[0] != names[1], "states",
-                 "must be \"crossed\", \"parallel\" or both");
+  const bool is_each_once = names.size() < 2 || (names.size() == 2 && names[0] != names[1]);
+  fields.require(is_each_once, "states", "must be \"crossed\", \"parallel\" or both");
   film.states.clear();
   for (const std::string& name : names) film.states.push_back(polariser_of(name).value_or(Polariser::kNone));
   fields.value({"settle_s", "From the command to turn until it stands, s", {0, 60}}, film.settle_s);

@@ -292,9 +292,10 @@ void print_run(const RunBatchReport& report, const std::optional<MergeReport>& m
   if (merged) print("look at " + (merged->folder / "report.html").string());
 }
 
-Result<int> run(RunBatchOptions options, const CommonArguments& common) {
-  if (options.array_from) {
-    const Result<int> task = task_of_array(*options.array_from);
+Result<int> run(const RunBatchRequest& request, const CommonArguments& common) {
+  RunBatchOptions options = request.options;
+  if (request.array_from) {
+    const Result<int> task = task_of_array(*request.array_from);
     if (!task) return task.error();
     options.task = *task;
   }
@@ -309,14 +310,14 @@ Result<int> run(RunBatchOptions options, const CommonArguments& common) {
   const Result<RunBatchReport> report = run_batch(options, context, after);
   if (!report) return report.error();
   std::optional<MergeReport> merged;
-  if (options.merges && !report->was_stopped) {
+  if (request.merges && !report->was_stopped) {
     Result<MergeReport> made = merge_batch(options.plan, context);
     if (!made) return std::move(made).error();
     merged = std::move(*made);
   }
   print_run(*report, merged, common);
   if (merged) return merged->state.summary.is_whole() ? kDone : kDoneWithWarnings;
-  return options.array_from ? after_own_task(code_of(*report)) : code_of(*report);
+  return request.array_from ? after_own_task(code_of(*report)) : code_of(*report);
 }
 
 void add_choice_of_sessions(Options& options, PlanArguments& a) {
@@ -341,7 +342,7 @@ Run add_plan(Options& options) {
 }
 
 Run add_run(Options& options) {
-  const auto a = std::make_shared<RunBatchOptions>();
+  const auto a = std::make_shared<RunBatchRequest>();
   add_options(options, *a);
   return [a](const CommonArguments& common) { return run(*a, common); };
 }

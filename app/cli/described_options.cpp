@@ -52,11 +52,8 @@ std::string read_amount(const Field& field, const std::string& text, double& amo
         as_number(std::string_view(text).substr(0, text.size() - std::string_view(unit.name).size()));
     if (!number) continue;
     amount = *number * unit.size;
-    return field.range.holds(amount)
-               ? ""
-               : fmt::format("{}{}, and is {}", rule_of(field.range),
-                             field.units.front().size == 1 ? std::string(" ") + field.units.front().name : "",
-                             text);
+    if (field.range.holds(amount)) return "";
+    return fmt::format("{} {}, and is {}", rule_of(field.range), field.units.front().name, text);
   }
   return fmt::format("must be a number with {} behind it, and is \"{}\"", names, text);
 }

@@ -81,6 +81,12 @@ const std::vector<NamedCloth>& planned_cloths() {
   return cloths;
 }
 
+std::vector<std::string> planned_cloth_names() {
+  std::vector<std::string> names;
+  for (const NamedCloth& each : planned_cloths()) names.push_back(each.name);
+  return names;
+}
+
 Result<NamedCloth> cloth_of_reflectance(const std::filesystem::path& file, std::optional<double> albedo) {
   Result<Json> document = read_json(file, "weft.reflectance", 1);
   if (!document) return std::move(document).error();

@@ -19,6 +19,7 @@ struct NamedCloth {
 
 /// Cloths by name; plausible, not measured (docs/reflectance.md).
 const std::vector<NamedCloth>& planned_cloths();
+std::vector<std::string> planned_cloth_names();
 
 /// The first observable lobe of a reflectance.json (schema weft.reflectance/1). One whose f0 is known only
 /// over the albedo takes `albedo`. kBadData where nothing was observable.

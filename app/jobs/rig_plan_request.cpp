@@ -22,12 +22,6 @@ Result<NamedCloth> cloth_of(const RigPlanRequest& r) {
   return typed;
 }
 
-std::vector<std::string> cloth_names() {
-  std::vector<std::string> names;
-  for (const NamedCloth& each : planned_cloths()) names.push_back(each.name);
-  return names;
-}
-
 }  // namespace
 
 Result<NamedCloth> RigPlanRequest::asked_cloth() const {
@@ -44,7 +38,7 @@ void describe(Fields& fields, RigPlanRequest& r) {
        .option = "",
        .said = Said::kAtThisMachine},
       r.plan.rig);
-  fields.value({.name = "cloth", .says = "What is to be scanned", .words = cloth_names()}, r.cloth);
+  fields.value({.name = "cloth", .says = "What is to be scanned", .words = planned_cloth_names()}, r.cloth);
   fields.value(
       {.name = "reflectance", .says = "reflectance.json of a solve: its first lobe", .path = PathTo::kFile},
       r.reflectance);

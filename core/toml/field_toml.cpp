@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -38,15 +41,34 @@ std::optional<UnknownKey> unknown_key(const Json& object, const Json& schema, co
   return {};
 }
 
+// 6.0 is a whole number, too.
+Json with_whole_numbers(Json value) {
+  constexpr double kMost = 1e9;
+  if (value.is_structured()) {
+    for (Json& each : value) each = with_whole_numbers(std::move(each));
+  } else if (value.is_number_float()) {
+    const double number = value.get<double>();
+    if (std::abs(number) < kMost && number == std::floor(number)) value = static_cast<int>(number);
+  }
+  return value;
+}
+
+std::string quoted(const std::string& key) {
+  const bool is_bare = !key.empty() && std::ranges::all_of(key, [](unsigned char c) {
+    return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-');
+  });
+  return is_bare ? key : Json(key).dump();
+}
+
 void append(std::string& text, const Json& object) {
   for (const auto& [key, value] : object.items()) {
     const bool is_tables = value.is_array() && !value.empty() && value[0].is_object();
-    if (!is_tables) text += fmt::format("{} = {}\n", key, value.dump());
+    if (!is_tables) text += fmt::format("{} = {}\n", quoted(key), value.dump());
   }
   for (const auto& [key, value] : object.items()) {
     if (!value.is_array() || value.empty() || !value[0].is_object()) continue;
     for (const Json& each : value) {
-      text += fmt::format("\n[[{}]]\n", key);
+      text += fmt::format("\n[[{}]]\n", quoted(key));
       append(text, each);
     }
   }
@@ -60,7 +82,7 @@ Result<void> read_table(const toml::table& table, const std::string& where, cons
     return Error{ErrorKind::kBadData, "the description cannot be used", std::move(place), std::move(why),
                  fmt::format("see {} for the keys of this file", page)};
   };
-  const Json document = json_of(table);
+  const Json document = with_whole_numbers(json_of(table));
   if (const auto unknown = unknown_key(document, schema, where)) {
     return unusable(fmt::format("{}: {}", unknown->where, unknown->key),
                     fmt::format("there is no such key; the nearest is {}", unknown->nearest));

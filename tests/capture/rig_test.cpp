@@ -69,10 +69,12 @@ TEST(RigFile, SaysWhatHangsOnTheBoardBesideTheLeds) {
                         "[polariser]\nstates = [\"crossed\", \"parallel\"]\nsettle_s = 2\n"));
   ASSERT_TRUE(rig) << rig.error().message();
   ASSERT_TRUE(rig->below);
+  EXPECT_EQ(read_rig(rig_file("leds = 6.0\n"))->leds, 6) << "a whole number, however it is written";
   EXPECT_EQ(rig->below->exposure_us, 9000);
   EXPECT_THAT(rig->polariser.states, testing::ElementsAre(Polariser::kCrossed, Polariser::kParallel));
   EXPECT_EQ(rig->polariser.settle_s, 2);
-  for (const char* states : {"[\"none\"]", "[\"crossed\", \"crossed\"]", "[\"skewed\"]"}) {
+  for (const char* states : {"[\"none\"]", "[\"crossed\", \"crossed\"]",
+                             "[\"crossed\", \"parallel\", \"crossed\"]", "[\"skewed\"]"}) {
     const auto wrong = read_rig(rig_file(std::string("[polariser]\nstates = ") + states + "\n"));
     ASSERT_FALSE(wrong) << states;
     EXPECT_THAT(wrong.error().message(), HasSubstr("states"));

@@ -447,7 +447,8 @@ Result<void> check_options(const RunBatchOptions& options, const batch::Header& 
 
 }  // namespace
 
-void describe(Fields& fields, RunBatchOptions& o) {
+void describe(Fields& fields, RunBatchRequest& r) {
+  RunBatchOptions& o = r.options;
   fields.value({.name = "plan",
                 .says = "Plan of weft batch plan",
                 .need = Need::kMustSay,
@@ -469,13 +470,13 @@ void describe(Fields& fields, RunBatchOptions& o) {
                         "again where it ends with 75, up to three times",
                 .range = kNotNegative,
                 .said = Said::kAtThisMachine},
-               o.array_from);
+               r.array_from);
   fields.value(
       {.name = "merge",
        .says = "Write the report afterwards, as weft batch merge does, and end with its exit code: 2 "
                "where a session failed or is missing. Not where it was stopped",
        .said = Said::kAtThisMachine},
-      o.merges);
+      r.merges);
   for (const char* whole : {"at_once", "array_from", "merge"}) fields.exclude(whole, "task");
   fields.value({"retry_failed", "Try sessions again that failed before"}, o.retry_failed);
   describe_kept_maps(fields, o.keep, o.half);
@@ -494,7 +495,7 @@ void describe(Fields& fields, RunBatchOptions& o) {
                o.scratch);
   fields.value({.name = "memory_mb",
                 .says = "That a session may hold, else it is lost alone: 1500M, 2G",
-                .range = kAboveZero,
+                .range = {1, 1 << 30},
                 .option = "--memory",
                 .units = {{"M"}, {"G", 1024}}},
                o.memory_mb);

@@ -25,12 +25,17 @@ struct RunBatchOptions {
   std::string fetch, store;            ///< commands with {src} and {dst}; empty: none
   std::filesystem::path scratch = {};  ///< where fetched sessions go; empty: the system's temporary folder
   std::optional<double> memory_mb;     ///< of a session at most; none: as much as there is
-  std::optional<int> array_from;       ///< `task` is this more than the index of the array that Slurm runs
-  bool merges = false;                 ///< the report is written afterwards
 
   std::uint64_t memory_bytes() const { return static_cast<std::uint64_t>(memory_mb.value_or(0) * (1 << 20)); }
 };
-void describe(Fields& fields, RunBatchOptions& options);
+
+/// What `weft batch run` and its job are told.
+struct RunBatchRequest {
+  RunBatchOptions options;
+  std::optional<int> array_from;  ///< `task` is this more than the index of the array that Slurm runs
+  bool merges = false;            ///< the report is written afterwards
+};
+void describe(Fields& fields, RunBatchRequest& request);
 
 struct RunBatchReport {
   int kept = 0;           ///< sessions that were done before

@@ -12,12 +12,6 @@
 namespace weft::app {
 namespace {
 
-std::vector<std::string> cloth_names() {
-  std::vector<std::string> names;
-  for (const NamedCloth& each : planned_cloths()) names.push_back(each.name);
-  return names;
-}
-
 std::string help_of_maps() {
   std::string help = "Which to derive, by commas; default all:";
   for (const DerivedMap& map : derived_maps())
@@ -66,7 +60,7 @@ void describe_derived(Fields& fields, DeriveOptions& d) {
   fields.value({"directions", "Of the occlusion's lines, 4 to 64", {4, 64}}, d.directions);
   fields.value({.name = "cloth",
                 .says = "Whose lobe is typed where the photographs tell none",
-                .words = cloth_names()},
+                .words = planned_cloth_names()},
                d.cloth);
 }
 

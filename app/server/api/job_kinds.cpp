@@ -265,7 +265,7 @@ const std::vector<JobKind>& job_kinds() {
       {"batch_run",
        "Batch",
        {"batch", "run", "--merge"},
-       {walk<BatchName>, walk<RunBatchOptions>},
+       {walk<BatchName>, walk<RunBatchRequest>},
        add_batch_run}};
   return kinds;
 }

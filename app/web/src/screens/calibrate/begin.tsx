@@ -54,7 +54,7 @@ function Description({thing, said, onSaid}: DescriptionProps) {
     <fieldset class="description">
       <legend>What the {thing} is. Where the rig knows it already, leave this empty.</legend>
       {said.text === '' && <SchemaForm schema={schemaOf(forms.value.things[thing])} wish={said.wish} onWish={(wish) => onSaid({wish, text: ''})} prefix={`${thing}-`} />}
-      {said.text !== '' && <pre>{said.text}</pre>}
+      {said.text !== '' && <><pre>{said.text}</pre><div><Button kind="quiet" onClick={() => onSaid(nothing)}>Say it field by field</Button></div></>}
       <label for="description-file">{said.text === '' ? 'Or its file' : 'Its file'}, {thing}.toml</label>
       <input id="description-file" type="file" accept=".toml,text/plain" onChange={(event) => void take(event.currentTarget.files?.[0])} />
     </fieldset>

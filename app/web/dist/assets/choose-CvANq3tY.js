@@ -1,1 +1,0 @@
-import{E as e}from"./index-BaNnek9M.js";import{c as n}from"./plan-Oot0nyrN.js";function r(o,s){sessionStorage.setItem(n,JSON.stringify({sessions:o,calibration:s})),e("/batches?plan=chosen")}export{r as p};
