@@ -12,22 +12,6 @@
 namespace weft::batch {
 namespace {
 
-Json json_of(const BeforeAfter& pair) {
-  return {{"before", pair.before}, {"after", pair.after}};
-}
-
-BeforeAfter pair_from(JsonFields& fields, const char* key) {
-  JsonFields pair(fields.object(key), fields.where() + ": " + key);
-  const BeforeAfter read = {pair.number("before"), pair.number("after")};
-  if (!pair.status()) fields.reject(key, "has no \"before\" and \"after\"");
-  return read;
-}
-
-std::optional<BeforeAfter> optional_pair(JsonFields& fields, const char* key) {
-  if (!fields.has(key)) return {};
-  return pair_from(fields, key);
-}
-
 // Something that may have grown.
 struct Grown {
   double factor = 0;  // 0: it did not grow by enough to speak of
@@ -58,43 +42,33 @@ std::vector<Grown> grown(const Change& change) {
 
 }  // namespace
 
-Json json_of(const Change& c) {
-  Json json = {
-      {"pixels", c.pixels},
-      {"mean_deg", c.mean_deg},
-      {"median_deg", c.median_deg},
-      {"p95_deg", c.p95_deg},
-      {"max_deg", c.max_deg},
-      {"albedo_rel", c.albedo_rel},
-      {"albedo_bias_rel", c.albedo_bias_rel},
-      {"unsolved", json_of(c.unsolved)},
-      {"worst",
-       {{"x", c.worst.x}, {"y", c.worst.y}, {"side", c.worst.side}, {"mean_deg", c.worst.mean_deg}}}};
-  if (c.sigma_deg) json["sigma_deg"] = json_of(*c.sigma_deg);
-  if (c.left_out) json["left_out"] = json_of(*c.left_out);
-  if (c.status_changed) json["status_changed"] = *c.status_changed;
-  return json;
+void describe(Fields& fields, BeforeAfter& pair) {
+  fields.value({"before", "Of the solve before", {}, kMustSay}, pair.before);
+  fields.value({"after", "Of this one", {}, kMustSay}, pair.after);
 }
 
-Result<Change> change_from_json(const Json& json, const std::string& where) {
-  JsonFields fields(json, where);
-  Change c;
-  c.pixels = static_cast<std::int64_t>(fields.number("pixels"));
-  c.mean_deg = fields.number("mean_deg");
-  c.median_deg = fields.number("median_deg");
-  c.p95_deg = fields.number("p95_deg");
-  c.max_deg = fields.number("max_deg");
-  c.albedo_rel = fields.number("albedo_rel");
-  c.albedo_bias_rel = fields.number("albedo_bias_rel");
-  c.unsolved = pair_from(fields, "unsolved");
-  c.sigma_deg = optional_pair(fields, "sigma_deg");
-  c.left_out = optional_pair(fields, "left_out");
-  c.status_changed = fields.optional_number("status_changed");
-  JsonFields worst(fields.object("worst"), where + ": worst");
-  c.worst = {worst.integer("x"), worst.integer("y"), worst.integer("side"), worst.number("mean_deg")};
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  if (Result<void> ok = worst.status(); !ok) return std::move(ok).error();
-  return c;
+void describe(Fields& fields, WorstWindow& w) {
+  fields.value({"x", "Its left edge, pixels", {}, kMustSay}, w.x);
+  fields.value({"y", "Its upper edge, pixels", {}, kMustSay}, w.y);
+  fields.value({"side", "Pixels", {}, kMustSay}, w.side);
+  fields.value({"mean_deg", "Mean turn of its normals, degrees", {}, kMustSay}, w.mean_deg);
+}
+
+void describe(Fields& fields, Change& c) {
+  fields.value({"pixels", "That have a normal in both", {}, kMustSay}, c.pixels);
+  fields.value({"mean_deg", "Between old and new normals, degrees", {}, kMustSay}, c.mean_deg);
+  fields.value({"median_deg", "The same", {}, kMustSay}, c.median_deg);
+  fields.value({"p95_deg", "The same: its 95th percentile", {}, kMustSay}, c.p95_deg);
+  fields.value({"max_deg", "The same", {}, kMustSay}, c.max_deg);
+  fields.value({"albedo_rel", "Mean of |new - old| / old", {}, kMustSay}, c.albedo_rel);
+  fields.value({"albedo_bias_rel", "Mean of (new - old) / old", {}, kMustSay}, c.albedo_bias_rel);
+  fields.object({"unsolved", "Shares of pixels", {}, kMustSay}, c.unsolved);
+  fields.object({"worst", "The square that turned most", {}, kMustSay}, c.worst);
+  fields.object({"sigma_deg", "Medians of the angle that sigma.exr predicts, degrees", {}, kUnlessEmpty},
+                c.sigma_deg);
+  fields.object({"left_out", "Rms of how left-out lights are predicted, shares", {}, kUnlessEmpty},
+                c.left_out);
+  fields.value({"status_changed", "Share of pixels whose status speaks otherwise"}, c.status_changed);
 }
 
 std::vector<std::string> regressions(const Change& change) {

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/fields.h"
 
 // How a solve differs from the one before it.
 
@@ -42,8 +41,7 @@ struct Change {
   friend bool operator==(const Change&, const Change&) = default;
 };
 
-Json json_of(const Change& change);
-Result<Change> change_from_json(const Json& json, const std::string& where);
+void describe(Fields& fields, Change& change);
 
 /// Sigma, or what left-out lights are off by, that grew by more than this share is worse.
 inline constexpr double kWorseBy = 0.1;

@@ -7,19 +7,31 @@
 #include <utility>
 
 #include "core/error_json.h"
+#include "core/field_json.h"
 
 namespace weft::batch {
 namespace {
 
 constexpr const char* kSchema = "weft.batch-result/1";
 
-std::vector<std::string> texts_in(JsonFields& fields, const char* key) {
-  std::vector<std::string> texts;
-  if (!fields.has(key)) return texts;
-  for (const Json& each : fields.list(key)) {
-    if (each.is_string()) texts.push_back(each.get<std::string>());
-  }
-  return texts;
+void describe_done(Fields& fields, Outcome& o) {
+  fields.value({"solve", "Its id", {}, kMustSay}, o.solve);
+  fields.value({"folder", "Where it is", {}, kMustSay}, o.folder);
+  fields.value({"stored", "The folder is where it was sent to, which this machine may not see"}, o.is_stored);
+  fields.value({"read_s", "Seconds of reading", {}, kMustSay}, o.read_s);
+  fields.value({"solve_s", "Seconds of solving", {}, kMustSay}, o.solve_s);
+  fields.value({"compare_s", "Seconds of comparing", {}, kMustSay}, o.compare_s);
+  fields.value({"expected_deg", "Mean error to expect; 0 where it was there", {}, kMustSay}, o.expected_deg);
+  fields.value({"sigma_deg", "Median angle that sigma.exr predicts, degrees", {}, kMustSay}, o.sigma_deg);
+  fields.value({"sigma_p95_deg", "Its 95th percentile, degrees", {}, kMustSay}, o.sigma_p95_deg);
+  fields.value({"unsolved", "Share of pixels", {}, kMustSay}, o.unsolved);
+  fields.value({"solved", "Share of the cloth that has a normal; since 1.1"}, o.solved);
+  fields.value({"left_out", "Rms of how left-out lights are predicted, a share"}, o.left_out);
+  fields.value({"warnings", "By name"}, o.warnings);
+  fields.value({"made", "Folders of maps and exports"}, o.made);
+  fields.object({"change", "From the solve before", {}, kUnlessEmpty}, o.change);
+  fields.value({"no_change", "Why it could not be compared with the solve before", {}, kUnlessEmpty},
+               o.no_change);
 }
 
 }  // namespace
@@ -46,76 +58,33 @@ bool is_of_session(ErrorKind kind) {
   return false;
 }
 
-std::string line_of(const Outcome& o) {
-  Json json = {{"schema", fmt::format("{}{}", kSchema, o.solved ? ".1" : "")},
-               {"plan", o.plan},
-               {"session", o.session},
-               {"state", kStateNames[static_cast<std::size_t>(o.state)]},
-               {"attempt", o.attempt},
-               {"host", o.host},
-               {"seconds", o.seconds},
-               {"node_seconds", o.node_seconds},
-               {"peak_bytes", o.peak_bytes}};
-  if (o.error) json["error"] = json_of(*o.error);
-  if (o.is_done()) {
-    json["solve"] = o.solve;
-    json["folder"] = o.folder;
-    json["stored"] = o.is_stored;
-    json["read_s"] = o.read_s;
-    json["solve_s"] = o.solve_s;
-    json["compare_s"] = o.compare_s;
-    json["expected_deg"] = o.expected_deg;
-    json["sigma_deg"] = o.sigma_deg;
-    json["sigma_p95_deg"] = o.sigma_p95_deg;
-    json["unsolved"] = o.unsolved;
-    if (o.solved) json["solved"] = *o.solved;
-    if (o.left_out) json["left_out"] = *o.left_out;
-    json["warnings"] = o.warnings;
-    json["made"] = o.made;
-    if (o.change) json["change"] = json_of(*o.change);
-    if (!o.no_change.empty()) json["no_change"] = o.no_change;
-  }
+void describe(Fields& fields, Outcome& o) {
+  fields.value({"plan", "Id of the plan", {}, kMustSay}, o.plan);
+  fields.value({"session", "Its folder", {}, kMustSay}, o.session);
+  fields.choice({"state", "What became of it", {}, kMustSay}, o.state, kStateNames);
+  fields.value({"attempt", "From 1", {}, kMustSay}, o.attempt);
+  fields.value({"host", "Where it ran", {}, kMustSay}, o.host);
+  fields.value({"seconds", "Wall", {}, kMustSay}, o.seconds);
+  fields.value({"node_seconds", "The same of a machine that has all threads to itself", {}, kMustSay},
+               o.node_seconds);
+  fields.value({"peak_bytes", "Of memory", {}, kMustSay}, o.peak_bytes);
+  fields.object({"error", "Why it failed, or was lost", {}, kUnlessEmpty}, o.error);
+  fields.only_if(o.is_done(), [&] { describe_done(fields, o); });
+}
+
+std::string line_of(const Outcome& outcome) {
+  Json json = {{"schema", fmt::format("{}{}", kSchema, outcome.solved ? ".1" : "")}};
+  write_fields(json, outcome);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 std::optional<Outcome> outcome_from_line(std::string_view line) {
   const Json json = Json::parse(line, nullptr, false);
   if (!json.is_object()) return {};
-  JsonFields fields(json, "result");
-  Outcome o;
-  o.plan = fields.text("plan");
-  o.session = fields.text("session");
-  o.state = fields.one_of<State>("state", kStateNames);
-  o.attempt = fields.integer("attempt");
-  o.host = fields.text("host");
-  o.seconds = fields.number("seconds");
-  o.node_seconds = fields.number("node_seconds");
-  o.peak_bytes = static_cast<std::uint64_t>(std::max(0.0, fields.number("peak_bytes")));
-  if (fields.has("error")) o.error = error_of_json(json["error"], "result");
-  if (!fields.status()) return {};
-  if (!o.is_done()) return o;
-  o.solve = fields.text("solve");
-  o.folder = fields.text("folder");
-  o.is_stored = json.value("stored", Json()) == true;
-  o.read_s = fields.number("read_s");
-  o.solve_s = fields.number("solve_s");
-  o.compare_s = fields.number("compare_s");
-  o.expected_deg = fields.number("expected_deg");
-  o.sigma_deg = fields.number("sigma_deg");
-  o.sigma_p95_deg = fields.number("sigma_p95_deg");
-  o.unsolved = fields.number("unsolved");
-  o.solved = fields.optional_number("solved");
-  o.left_out = fields.optional_number("left_out");
-  o.warnings = texts_in(fields, "warnings");
-  o.made = texts_in(fields, "made");
-  o.no_change = fields.text_or("no_change", "");
-  if (fields.has("change")) {
-    Result<Change> change = change_from_json(json["change"], "result");
-    if (!change) return {};
-    o.change = std::move(*change);
-  }
-  if (!fields.status()) return {};
-  return o;
+  const Json schema = json.value("schema", Json());
+  if (!schema.is_string() || !schema.get<std::string>().starts_with(kSchema)) return {};
+  Result<Outcome> outcome = read_fields<Outcome>(json, "result");
+  return outcome ? std::optional(std::move(*outcome)) : std::nullopt;
 }
 
 void add_histories(std::string_view lines, const std::string& plan, std::map<std::string, History>& all) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "batch/change.h"
-#include "core/json_document.h"
+#include "core/fields.h"
 #include "core/result.h"
 
 // What became of a session: a line of RESULTS/task-N.jsonl (weft.batch-result/1, docs/formats.md). Lines are
@@ -54,6 +54,8 @@ struct Outcome {
   bool is_done() const { return state == State::kSolved || state == State::kThere; }
   friend bool operator==(const Outcome&, const Outcome&);
 };
+
+void describe(Fields& fields, Outcome& outcome);
 
 /// Whether an error says something of the session: then it is remembered. What says something of the machine
 /// or the hour is not.

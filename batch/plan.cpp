@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/field_json.h"
 #include "core/files.h"
 
 namespace weft::batch {
@@ -16,189 +17,6 @@ namespace fs = std::filesystem;
 
 std::string line_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
-}
-
-std::vector<std::string> texts_of(JsonFields& fields, const char* key) {
-  std::vector<std::string> texts;
-  for (const Json& each : fields.list(key)) {
-    if (each.is_string()) {
-      texts.push_back(each.get<std::string>());
-    } else {
-      fields.reject(key, "holds something other than texts");
-    }
-  }
-  return texts;
-}
-
-std::uint64_t count_of(JsonFields& fields, const char* key) {
-  const double number = fields.number(key);
-  if (number < 0 || number > 9e15) fields.reject(key, "is no count");
-  return static_cast<std::uint64_t>(std::clamp(number, 0.0, 9e15));
-}
-
-Json json_of(const Product& product) {
-  return {{"keep", product.keep},
-          {"half", product.half},
-          {"compression", product.compression},
-          {"then", product.then}};
-}
-
-Result<Product> product_from(const Json& json, const std::string& where) {
-  JsonFields fields(json, where);
-  Product product;
-  product.keep = texts_of(fields, "keep");
-  product.half = json.value("half", Json()) == true;
-  product.compression = fields.text("compression");
-  product.then = texts_of(fields, "then");
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  return product;
-}
-
-Json json_of(const Forecast& forecast) {
-  Json json = {{"seconds", forecast.seconds},
-               {"seconds_spread", forecast.seconds_spread},
-               {"predicted_deg", forecast.degrees},
-               {"predicted_deg_spread", forecast.degrees_spread},
-               {"from", forecast.is_measured ? "measured" : "carried_over"}};
-  if (forecast.turn_deg) json["turn_deg"] = *forecast.turn_deg;
-  if (forecast.solve_seconds > 0) {
-    json["predicted_solved"] = forecast.solved;
-    json["solve_seconds"] = forecast.solve_seconds;
-  }
-  return json;
-}
-
-Json json_of(const Job& job) {
-  Json json = {{"session", job.session},         {"task", job.task},   {"quality", job.quality},
-               {"digest", job.digest},           {"solve", job.solve}, {"before", job.before},
-               {"calibration", job.calibration}, {"rig", job.rig},     {"fabric", job.fabric},
-               {"megapixels", job.megapixels}};
-  json.update(json_of(job.forecast));
-  json["memory_bytes"] = job.memory_bytes;
-  json["read_bytes"] = job.read_bytes;
-  json["write_bytes"] = job.write_bytes;
-  return json;
-}
-
-Result<Job> job_from_json(const Json& json, const std::string& where) {
-  JsonFields fields(json, where);
-  Job job;
-  job.session = fields.text("session");
-  job.task = fields.integer("task");
-  job.quality = fields.text("quality");
-  job.digest = fields.text("digest");
-  job.solve = fields.text("solve");
-  job.before = fields.text("before");
-  job.calibration = fields.text("calibration");
-  job.rig = fields.text("rig");
-  job.fabric = fields.text("fabric");
-  job.megapixels = fields.number("megapixels");
-  Forecast& forecast = job.forecast;
-  forecast.seconds = fields.number("seconds");
-  forecast.seconds_spread = fields.number("seconds_spread");
-  forecast.degrees = fields.number("predicted_deg");
-  forecast.degrees_spread = fields.number("predicted_deg_spread");
-  forecast.is_measured = fields.one_of<int, 2>("from", {"carried_over", "measured"}) == 1;
-  forecast.turn_deg = fields.optional_number("turn_deg");
-  forecast.solved = fields.optional_number("predicted_solved").value_or(1);
-  forecast.solve_seconds = fields.optional_number("solve_seconds").value_or(0);
-  job.memory_bytes = count_of(fields, "memory_bytes");
-  job.read_bytes = count_of(fields, "read_bytes");
-  job.write_bytes = count_of(fields, "write_bytes");
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  return job;
-}
-
-Json json_of(const LeftOut& left) {
-  return {{"session", left.session},
-          {"left_out", kReasonNames[static_cast<std::size_t>(left.reason)]},
-          {"kind", left.kind},
-          {"said", left.said},
-          {"seconds", left.seconds}};
-}
-
-Result<LeftOut> left_out_from_json(const Json& json, const std::string& where) {
-  JsonFields fields(json, where);
-  LeftOut left;
-  left.session = fields.text("session");
-  left.reason = fields.one_of<Reason>("left_out", kReasonNames);
-  left.kind = fields.text("kind");
-  left.said = fields.text("said");
-  left.seconds = fields.number("seconds");
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  return left;
-}
-
-// A list for each number of a task: a header of 10 000 tasks is then short.
-Json json_of(const std::vector<TaskPlace>& tasks) {
-  Json offset = Json::array(), bytes = Json::array(), sessions = Json::array(), seconds = Json::array(),
-       memory = Json::array();
-  for (const TaskPlace& task : tasks) {
-    offset.push_back(task.offset);
-    bytes.push_back(task.bytes);
-    sessions.push_back(task.sessions);
-    seconds.push_back(task.seconds);
-    memory.push_back(task.memory_bytes);
-  }
-  return {{"offset", std::move(offset)},
-          {"bytes", std::move(bytes)},
-          {"sessions", std::move(sessions)},
-          {"seconds", std::move(seconds)},
-          {"memory_bytes", std::move(memory)}};
-}
-
-std::vector<TaskPlace> tasks_from(JsonFields& header) {
-  JsonFields fields(header.object("tasks"), header.where() + ": tasks");
-  const std::array lists = {&fields.list("offset"), &fields.list("bytes"), &fields.list("sessions"),
-                            &fields.list("seconds"), &fields.list("memory_bytes")};
-  std::vector<TaskPlace> tasks(lists.front()->size());
-  for (const Json* list : lists) {
-    const double most = list == lists[2] ? 1e9 : 1e15;
-    const bool fits = list->size() == tasks.size() && std::ranges::all_of(*list, [most](const Json& v) {
-                        return v.is_number() && v >= 0 && v <= most;
-                      });
-    if (fits) continue;
-    header.reject("tasks", "has lists that do not belong together");
-    return {};
-  }
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    tasks[i] = {(*lists[0])[i].get<std::uint64_t>(), (*lists[1])[i].get<std::uint64_t>(),
-                (*lists[2])[i].get<int>(), (*lists[3])[i].get<double>(), (*lists[4])[i].get<std::uint64_t>()};
-  }
-  return tasks;
-}
-
-Json json_of(const Header& header) {
-  Json levels = Json::array(), curve = Json::array(), calibrations = Json::array();
-  bool has_shares = false;
-  for (const LevelTotal& level : header.levels) {
-    levels.push_back({{"quality", level.quality},
-                      {"hours", level.hours},
-                      {"mean_deg", level.mean_deg},
-                      {"spread_deg", level.spread_deg},
-                      {"sessions", level.sessions}});
-    if (level.solved) levels.back()["solved"] = *level.solved;
-    has_shares |= level.solved.has_value();
-  }
-  for (const Spent& spent : header.curve)
-    curve.push_back({{"hours", spent.hours}, {"mean_deg", spent.mean_deg}});
-  for (const NamedCalibration& each : header.calibrations)
-    calibrations.push_back({{"folder", each.folder}, {"id", each.id}, {"rig", each.rig}});
-  return {{"schema", fmt::format("{}{}", kPlanSchema, has_shares ? ".1" : "")},
-          {"id", header.id},
-          {"archive", header.archive},
-          {"output", header.output},
-          {"product", json_of(header.product)},
-          {"calibrations", std::move(calibrations)},
-          {"solver_version", header.solver_version},
-          {"threads", header.threads},
-          {"sampled", header.sampled},
-          {"sample_seconds", header.sample_seconds},
-          {"sessions", header.sessions},
-          {"left_out", header.left_out},
-          {"levels", std::move(levels)},
-          {"curve", std::move(curve)},
-          {"tasks", json_of(header.tasks)}};
 }
 
 std::string id_of(Json header, std::string_view lines) {
@@ -211,28 +29,6 @@ Error no_plan(const std::string& where, std::string why,
   return {ErrorKind::kBadData, "plan cannot be used", where, std::move(why), std::move(remedy)};
 }
 
-// Calibrations, levels and the curve.
-Result<void> read_lists(JsonFields& fields, const std::string& where, Header& header) {
-  for (const Json& each : fields.list("calibrations")) {
-    JsonFields named(each, where + ": calibrations");
-    header.calibrations.push_back({named.text("folder"), named.text("id"), named.text("rig")});
-    if (Result<void> ok = named.status(); !ok) return ok;
-  }
-  for (const Json& each : fields.list("levels")) {
-    JsonFields level(each, where + ": levels");
-    header.levels.push_back({level.text("quality"), level.number("hours"), level.number("mean_deg"),
-                             level.number("spread_deg"), level.integer("sessions"),
-                             level.optional_number("solved")});
-    if (Result<void> ok = level.status(); !ok) return ok;
-  }
-  for (const Json& each : fields.list("curve")) {
-    JsonFields spent(each, where + ": curve");
-    header.curve.push_back({spent.number("hours"), spent.number("mean_deg")});
-    if (Result<void> ok = spent.status(); !ok) return ok;
-  }
-  return {};
-}
-
 // Calls take(line) for each line.
 template <typename Take>
 void for_each_line(std::string_view text, const Take& take) {
@@ -241,6 +37,160 @@ void for_each_line(std::string_view text, const Take& take) {
     take(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
+}
+
+// A list for each number of a task: a header of 10 000 tasks is then short.
+class TaskLists {
+ public:
+  explicit TaskLists(const std::vector<TaskPlace>& tasks) {
+    for (const TaskPlace& task : tasks) {
+      offset.push_back(task.offset);
+      bytes.push_back(task.bytes);
+      sessions.push_back(task.sessions);
+      seconds.push_back(task.seconds);
+      memory.push_back(task.memory_bytes);
+    }
+  }
+
+  bool fit() const {
+    const auto fits = [&](const Json& list, double most) {
+      return list.size() == offset.size() && std::ranges::all_of(list, [most](const Json& each) {
+               return each.is_number() && each >= 0 && each <= most;
+             });
+    };
+    return fits(offset, 1e15) && fits(bytes, 1e15) && fits(sessions, 1e9) && fits(seconds, 1e15) &&
+           fits(memory, 1e15);
+  }
+
+  std::vector<TaskPlace> tasks() const {
+    std::vector<TaskPlace> tasks(offset.size());
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      tasks[i] = {offset[i].get<std::uint64_t>(), bytes[i].get<std::uint64_t>(), sessions[i].get<int>(),
+                  seconds[i].get<double>(), memory[i].get<std::uint64_t>()};
+    }
+    return tasks;
+  }
+
+  Json offset = Json::array(), bytes = Json::array(), sessions = Json::array(), seconds = Json::array(),
+       memory = Json::array();
+};
+
+void describe(Fields& fields, TaskLists& t) {
+  fields.value({"offset", "From the end of the header's line, by task", {}, kMustSay}, t.offset);
+  fields.value({"bytes", "By task", {}, kMustSay}, t.bytes);
+  fields.value({"sessions", "By task", {}, kMustSay}, t.sessions);
+  fields.value({"seconds", "By task", {}, kMustSay}, t.seconds);
+  fields.value({"memory_bytes", "By task, of its largest", {}, kMustSay}, t.memory);
+}
+
+template <typename Described>
+Result<Described> from_line(std::string_view line, const std::string& where) {
+  return read_fields<Described>(Json::parse(line, nullptr, false), where);
+}
+
+}  // namespace
+
+void describe(Fields& fields, Product& p) {
+  fields.value({"keep", "Maps that stay, by name; none: all", {}, kMustSay}, p.keep);
+  fields.value({"half", "Normals as half floats"}, p.half);
+  fields.value({"compression", "Of EXR files", {}, kMustSay}, p.compression);
+  fields.value({"then", "Made of it afterwards: \"maps\", \"export:unreal\"", {}, kMustSay}, p.then);
+}
+
+void describe(Fields& fields, NamedCalibration& c) {
+  fields.value({"folder", "Where it is", {}, kMustSay}, c.folder);
+  fields.value({"id", "Its id", {}, kMustSay}, c.id);
+  fields.value({"rig", "In place of those of this rig's sessions", {}, kMustSay}, c.rig);
+}
+
+void describe(Fields& fields, Forecast& f) {
+  constexpr std::array<const char*, 2> kFrom = {"carried_over", "measured"};
+  fields.value({"seconds", "That it is expected to take", {}, kMustSay}, f.seconds);
+  fields.value({"seconds_spread", "A standard deviation; 0: not known", {}, kMustSay}, f.seconds_spread);
+  fields.value({"predicted_deg", "Mean error of the normals, degrees", {}, kMustSay}, f.degrees);
+  fields.value({"predicted_deg_spread", "A standard deviation, degrees", {}, kMustSay}, f.degrees_spread);
+  fields.choice({"from", "Measured on this very session, or on others", {}, kMustSay}, f.is_measured, kFrom);
+  fields.value({"turn_deg", "Mean angle to the solve before, degrees"}, f.turn_deg);
+  std::optional<double> solved = f.solve_seconds > 0 ? std::optional(f.solved) : std::nullopt;
+  fields.value({"predicted_solved", "Share of the cloth that has a normal; since 1.1"}, solved);
+  f.solved = solved.value_or(1);
+  fields.value({"solve_seconds", "Of the solve alone; since 1.1", {}, kUnlessEmpty}, f.solve_seconds);
+}
+
+void describe(Fields& fields, Job& j) {
+  fields.value({"session", "Its folder", {}, kMustSay}, j.session);
+  fields.value({"task", "From 0", {}, kMustSay}, j.task);
+  fields.value({"quality", "Level", {}, kMustSay}, j.quality);
+  fields.value({"digest",
+                "SHA-256 of session.json but fabric, metadata, current_solve, current_solve_for, copy",
+                {},
+                kMustSay},
+               j.digest);
+  fields.value({"solve", "Id that its solve will have", {}, kMustSay}, j.solve);
+  fields.value({"before", "Id of the solve that it is compared with; empty: none", {}, kMustSay}, j.before);
+  fields.value({"calibration", "Its id", {}, kMustSay}, j.calibration);
+  fields.value({"rig", "Its name", {}, kMustSay}, j.rig);
+  fields.value({"fabric", "What was scanned", {}, kMustSay}, j.fabric);
+  fields.value({"megapixels", "Of a frame", {}, kMustSay}, j.megapixels);
+  describe(fields, j.forecast);
+  fields.value({"memory_bytes", "That it needs, with a quarter and 200 MB added", {}, kMustSay},
+               j.memory_bytes);
+  fields.value({"read_bytes", "That it reads", {}, kMustSay}, j.read_bytes);
+  fields.value({"write_bytes", "That it writes", {}, kMustSay}, j.write_bytes);
+}
+
+void describe(Fields& fields, LeftOut& l) {
+  fields.value({"session", "Its folder", {}, kMustSay}, l.session);
+  fields.choice({"left_out", "Why it is not solved", {}, kMustSay}, l.reason, kReasonNames);
+  fields.value({"kind", "Of an error", {}, kMustSay}, l.kind);
+  fields.value({"said", "One sentence", {}, kMustSay}, l.said);
+  fields.value({"seconds", "That are saved", {}, kMustSay}, l.seconds);
+}
+
+void describe(Fields& fields, LevelTotal& l) {
+  fields.value({"quality", "Level", {}, kMustSay}, l.quality);
+  fields.value({"hours", "Of all sessions at it", {}, kMustSay}, l.hours);
+  fields.value({"mean_deg", "Mean error of the normals, degrees", {}, kMustSay}, l.mean_deg);
+  fields.value({"spread_deg", "A standard deviation, degrees", {}, kMustSay}, l.spread_deg);
+  fields.value({"sessions", "That are solved at it", {}, kMustSay}, l.sessions);
+  fields.value({"solved", "Share of the cloth that mean_deg holds for; since 1.1"}, l.solved);
+}
+
+void describe(Fields& fields, Spent& s) {
+  fields.value({"hours", "Given out", {}, kMustSay}, s.hours);
+  fields.value({"mean_deg", "That they buy, over the whole cloth, degrees", {}, kMustSay}, s.mean_deg);
+}
+
+void describe(Fields& fields, Header& h) {
+  fields.value({"id", "16 digits of the SHA-256 of all else", {}, kMustSay}, h.id);
+  fields.value({"archive", "The folder that holds all sessions", {}, kMustSay}, h.archive);
+  fields.value(
+      {"output", "Folder for solves that mirrors the archive; empty: each in its session", {}, kMustSay},
+      h.output);
+  fields.object({"product", "What becomes of each solve", {}, kMustSay}, h.product);
+  fields.list({"calibrations", "In place of the sessions' own", {}, kMustSay}, h.calibrations);
+  fields.value({"solver_version", "As solve.json has it", {}, kMustSay}, h.solver_version);
+  fields.value({"threads", "That the seconds hold for", {}, kMustSay}, h.threads);
+  fields.value({"sampled", "Sessions that were measured", {}, kMustSay}, h.sampled);
+  fields.value({"sample_seconds", "That this took", {}, kMustSay}, h.sample_seconds);
+  fields.value({"sessions", "That are solved", {}, kMustSay}, h.sessions);
+  fields.value({"left_out", "Sessions that are not", {}, kMustSay}, h.left_out);
+  fields.list({"levels", "Those that were measured", {}, kMustSay}, h.levels);
+  fields.list({"curve", "Of --within: where hours were given out", {}, kMustSay}, h.curve);
+  TaskLists lists(h.tasks);
+  fields.object({"tasks", "Where the lines of each lie, and what they cost", {}, kMustSay}, lists);
+  fields.require(lists.fit(), "tasks", "has lists that do not belong together");
+  if (lists.fit()) h.tasks = lists.tasks();
+}
+
+namespace {
+
+Json document_of(const Header& header) {
+  const bool has_shares =
+      std::ranges::any_of(header.levels, [](const LevelTotal& each) { return each.solved.has_value(); });
+  Json json = {{"schema", fmt::format("{}{}", kPlanSchema, has_shares ? ".1" : "")}};
+  write_fields(json, header);
+  return json;
 }
 
 }  // namespace
@@ -275,7 +225,7 @@ std::string text_of(Plan& plan) {
   header.tasks.clear();
   for (const Job& job : plan.jobs) {
     if (static_cast<std::size_t>(job.task) == header.tasks.size()) header.tasks.push_back({lines.size()});
-    const std::string line = line_of(json_of(job));
+    const std::string line = line_of(object_of(job));
     TaskPlace& task = header.tasks.back();
     task.bytes += line.size();
     task.sessions += 1;
@@ -283,11 +233,11 @@ std::string text_of(Plan& plan) {
     task.memory_bytes = std::max(task.memory_bytes, job.memory_bytes);
     lines += line;
   }
-  for (const LeftOut& left : plan.left_out) lines += line_of(json_of(left));
+  for (const LeftOut& left : plan.left_out) lines += line_of(object_of(left));
   header.sessions = static_cast<int>(plan.jobs.size());
   header.left_out = static_cast<int>(plan.left_out.size());
-  header.id = id_of(json_of(header), lines);
-  return line_of(json_of(header)) + lines;
+  header.id = id_of(document_of(header), lines);
+  return line_of(document_of(header)) + lines;
 }
 
 Result<Header> header_from_line(std::string_view line, const std::string& where) {
@@ -299,24 +249,7 @@ Result<Header> header_from_line(std::string_view line, const std::string& where)
     return no_plan(where, fmt::format("its schema is \"{}\"; this program reads {}", schema, kPlanSchema),
                    "make it again with weft batch plan of this version");
   }
-  JsonFields fields(json, where);
-  Header header;
-  header.id = fields.text("id");
-  header.archive = fields.text("archive");
-  header.output = fields.text("output");
-  Result<Product> product = product_from(fields.object("product"), where + ": product");
-  if (!product) return std::move(product).error();
-  header.product = std::move(*product);
-  header.solver_version = fields.integer("solver_version");
-  header.threads = fields.integer("threads");
-  header.sampled = fields.integer("sampled");
-  header.sample_seconds = fields.number("sample_seconds");
-  header.sessions = fields.integer("sessions");
-  header.left_out = fields.integer("left_out");
-  if (Result<void> ok = read_lists(fields, where, header); !ok) return std::move(ok).error();
-  header.tasks = tasks_from(fields);
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  return header;
+  return read_fields<Header>(json, where);
 }
 
 Result<std::vector<Job>> jobs_from_lines(std::string_view lines, const std::string& where) {
@@ -324,8 +257,7 @@ Result<std::vector<Job>> jobs_from_lines(std::string_view lines, const std::stri
   std::optional<Error> wrong;
   for_each_line(lines, [&](std::string_view line) {
     if (wrong) return;
-    const Json json = Json::parse(line, nullptr, false);
-    Result<Job> job = job_from_json(json, where);
+    Result<Job> job = from_line<Job>(line, where);
     if (job) {
       jobs.push_back(std::move(*job));
     } else {
@@ -350,12 +282,12 @@ Result<Plan> plan_from_text(std::string_view text, const std::string& where) {
     if (wrong) return;
     const Json json = Json::parse(line, nullptr, false);
     if (json.is_object() && json.contains("left_out")) {
-      Result<LeftOut> left = left_out_from_json(json, where);
+      Result<LeftOut> left = read_fields<LeftOut>(json, where);
       if (!left) wrong = std::move(left).error();
       if (left) plan.left_out.push_back(std::move(*left));
       return;
     }
-    Result<Job> job = job_from_json(json, where);
+    Result<Job> job = read_fields<Job>(json, where);
     if (!job) wrong = std::move(job).error();
     if (job) plan.jobs.push_back(std::move(*job));
   });

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/json_document.h"
+#include "core/fields.h"
 #include "core/result.h"
 
 // The plan of a batch as a document (weft.batch/1, docs/formats.md): JSON lines that never change once they
@@ -152,6 +152,10 @@ struct Plan {
 
   friend bool operator==(const Plan&, const Plan&) = default;
 };
+
+void describe(Fields& fields, Job& job);
+void describe(Fields& fields, LeftOut& left_out);
+void describe(Fields& fields, Header& header);
 
 /// SHA-256 of what a solve depends on in session.json: all but what people say of the cloth (fabric,
 /// metadata), the current solve, and where copies lie.

@@ -112,36 +112,6 @@ std::vector<ByCalibration> by_calibration(std::span<const Row> rows) {
   return all;
 }
 
-Json json_of(const Row& row) {
-  Json json = {{"session", row.job->session},
-               {"task", row.job->task},
-               {"quality", row.job->quality},
-               {"calibration", row.job->calibration},
-               {"state", row.result ? kStateNames[static_cast<std::size_t>(row.result->state)] : "missing"},
-               {"attempts", row.attempts},
-               {"predicted_seconds", row.job->forecast.seconds},
-               {"predicted_deg", row.job->forecast.degrees},
-               {"predicted_solved", row.job->forecast.solved}};
-  const std::optional<Outcome>& said = row.result ? row.result : row.lost;
-  if (said && said->error) json["error"] = json_of(*said->error);
-  if (!row.is_done()) return json;
-  json["solve"] = row.result->solve;
-  json["folder"] = row.result->folder;
-  json["seconds"] = row.result->seconds;
-  json["peak_bytes"] = row.result->peak_bytes;
-  json["sigma_deg"] = row.result->sigma_deg;
-  json["solved"] = row.result->solved_share();
-  json["warnings"] = row.result->warnings;
-  json["before"] = row.job->before;
-  if (row.result->change) {
-    json["change"] = json_of(*row.result->change);
-    json["regressions"] = regressions(*row.result->change);
-  } else if (!row.result->no_change.empty()) {
-    json["no_change"] = row.result->no_change;
-  }
-  return json;
-}
-
 }  // namespace
 
 std::vector<Row> rows_of(const Plan& plan, const std::map<std::string, History>& histories) {
@@ -181,49 +151,98 @@ Summary summarize(std::span<const Row> rows) {
   return summary;
 }
 
-Json json_of(const Summary& s, std::span<const Row> rows) {
-  Json causes = Json::array(), calibrations = Json::array(), changed = Json::array(),
-       barely_solved = Json::array(), warned = Json::array(), sessions = Json::array();
-  for (const Cause& cause : s.causes)
-    causes.push_back({{"kind", cause.kind},
-                      {"what", cause.what},
-                      {"sessions", cause.sessions},
-                      {"example", cause.example}});
-  for (const ByCalibration& c : s.calibrations)
-    calibrations.push_back({{"calibration", c.calibration},
-                            {"rig", c.rig},
-                            {"sessions", c.sessions},
-                            {"worse", c.worse},
-                            {"warned", c.warned},
-                            {"mean_turn_deg", c.mean_turn_deg ? Json(*c.mean_turn_deg) : Json()},
-                            {"left_out", c.left_out ? Json(*c.left_out) : Json()}});
-  for (const auto& [of, names] :
-       {std::pair{&s.changed, &changed}, {&s.barely_solved, &barely_solved}, {&s.warned, &warned}}) {
-    for (const std::size_t i : *of) names->push_back(rows[i].job->session);
-  }
-  for (const Row& row : rows) sessions.push_back(json_of(row));
-  return {{"solved", s.solved},
-          {"there", s.there},
-          {"failed", s.failed},
-          {"missing", s.missing},
-          {"second_attempts", s.second_attempts},
-          {"seconds", s.seconds},
-          {"predicted_seconds", s.predicted_seconds},
-          {"seconds_ratio", s.seconds_ratio()},
-          {"mean_deg", s.error.degrees()},
-          {"mean_solved", s.error.solved()},
-          {"predicted_deg", s.predicted_error.degrees()},
-          {"predicted_solved", s.predicted_error.solved()},
-          {"barely_solved", std::move(barely_solved)},
-          {"warned", std::move(warned)},
-          {"peak_bytes", s.peak_bytes},
-          {"causes", std::move(causes)},
-          {"calibrations", std::move(calibrations)},
-          {"worse", s.worse},
-          {"unchanged", s.unchanged},
-          {"changed", std::move(changed)},
-          {"missing_tasks", s.missing_tasks},
-          {"sessions", std::move(sessions)}};
+void describe(Fields& fields, Cause& c) {
+  fields.value({"kind", "Of the error"}, c.kind);
+  fields.value({"what", "What happened"}, c.what);
+  fields.value({"sessions", "How many"}, c.sessions);
+  fields.value({"example", "The message of one"}, c.example);
+}
+
+void describe(Fields& fields, ByCalibration& c) {
+  fields.value({"calibration", "Its id"}, c.calibration);
+  fields.value({"rig", "Its name"}, c.rig);
+  fields.value({"sessions", "That were solved by it"}, c.sessions);
+  fields.value({"worse", "Of them with regressions"}, c.worse);
+  fields.value({"warned", "Of them whose lights do not fit"}, c.warned);
+  fields.value({"mean_turn_deg", "From the solves before, degrees", {}, kOrNull}, c.mean_turn_deg);
+  fields.value({"left_out", "Median rms of how left-out lights are predicted, a share", {}, kOrNull},
+               c.left_out);
+}
+
+namespace {
+
+void describe_done(Fields& fields, Job& job, Outcome& o) {
+  double solved = o.solved_share();
+  fields.value({"solve", "Its id"}, o.solve);
+  fields.value({"folder", "Where it is"}, o.folder);
+  fields.value({"seconds", "That it took"}, o.seconds);
+  fields.value({"peak_bytes", "Of memory"}, o.peak_bytes);
+  fields.value({"sigma_deg", "Median angle that sigma.exr predicts, degrees"}, o.sigma_deg);
+  fields.value({"solved", "Share of the cloth that has a normal"}, solved);
+  fields.value({"warnings", "By name"}, o.warnings);
+  fields.value({"before", "Id of the solve that it is compared with; empty: none"}, job.before);
+  fields.object({"change", "From the solve before", {}, kUnlessEmpty}, o.change);
+  fields.only_if(o.change.has_value(), [&] {
+    std::vector<std::string> worse = o.change ? regressions(*o.change) : std::vector<std::string>();
+    fields.value({"regressions", "In what it is worse, the gravest first"}, worse);
+  });
+  fields.value({"no_change", "Why it could not be compared", {}, kUnlessEmpty}, o.no_change);
+}
+
+}  // namespace
+
+void describe(Fields& fields, Row& row) {
+  Job job = row.job != nullptr ? *row.job : Job();
+  Outcome outcome = row.result.value_or(row.lost.value_or(Outcome()));
+  std::string state = row.result ? kStateNames[static_cast<std::size_t>(row.result->state)] : "missing";
+  fields.value({"session", "Its folder"}, job.session);
+  fields.value({"task", "From 0"}, job.task);
+  fields.value({"quality", "Level"}, job.quality);
+  fields.value({"calibration", "Its id"}, job.calibration);
+  fields.value(
+      {.name = "state", .says = "What became of it", .words = {"solved", "there", "failed", "missing"}},
+      state);
+  fields.value({"attempts", "So far"}, row.attempts);
+  fields.value({"predicted_seconds", "By the plan"}, job.forecast.seconds);
+  fields.value({"predicted_deg", "By the plan, degrees"}, job.forecast.degrees);
+  fields.value({"predicted_solved", "By the plan, a share"}, job.forecast.solved);
+  fields.object({"error", "Why it failed, or its last attempt was lost", {}, kUnlessEmpty}, outcome.error);
+  fields.only_if(row.is_done(), [&] { describe_done(fields, job, outcome); });
+}
+
+void describe(Fields& fields, SummaryDocument& document) {
+  auto& [s, rows] = document;
+  const auto names_of = [&rows = rows](const std::vector<std::size_t>& some) {
+    std::vector<std::string> names;
+    for (const std::size_t i : some) names.push_back(rows[i].job->session);
+    return names;
+  };
+  double ratio = s.seconds_ratio(), deg = s.error.degrees(), solved = s.error.solved(),
+         predicted_deg = s.predicted_error.degrees(), predicted_solved = s.predicted_error.solved();
+  std::vector<std::string> barely = names_of(s.barely_solved), warned = names_of(s.warned),
+                           changed = names_of(s.changed);
+  fields.value({"solved", "Sessions"}, s.solved);
+  fields.value({"there", "Sessions whose solve was found"}, s.there);
+  fields.value({"failed", "Sessions"}, s.failed);
+  fields.value({"missing", "Sessions that have no result"}, s.missing);
+  fields.value({"second_attempts", "Sessions that were begun more than once"}, s.second_attempts);
+  fields.value({"seconds", "Node-seconds of those solved"}, s.seconds);
+  fields.value({"predicted_seconds", "Of them, by the plan"}, s.predicted_seconds);
+  fields.value({"seconds_ratio", "Predicted over taken"}, ratio);
+  fields.value({"mean_deg", "Mean error to expect, degrees"}, deg);
+  fields.value({"mean_solved", "Mean share of the cloth that has a normal"}, solved);
+  fields.value({"predicted_deg", "By the plan, degrees"}, predicted_deg);
+  fields.value({"predicted_solved", "By the plan, a share"}, predicted_solved);
+  fields.value({"barely_solved", "Sessions of which less than half is solved"}, barely);
+  fields.value({"warned", "Sessions whose solves warn"}, warned);
+  fields.value({"peak_bytes", "Of memory, of the largest"}, s.peak_bytes);
+  fields.list({"causes", "Of failures and missing ones, the most frequent first"}, s.causes);
+  fields.list({"calibrations", "The most suspect first"}, s.calibrations);
+  fields.value({"worse", "Sessions with regressions"}, s.worse);
+  fields.value({"unchanged", "Sessions without a changed pixel"}, s.unchanged);
+  fields.value({"changed", "Sessions that were compared, the gravest first"}, changed);
+  fields.value({"missing_tasks", "With a missing session, rising"}, s.missing_tasks);
+  fields.list({"sessions", "One each"}, rows);
 }
 
 }  // namespace weft::batch

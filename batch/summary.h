@@ -10,7 +10,7 @@
 
 #include "batch/outcome.h"
 #include "batch/plan.h"
-#include "core/json_document.h"
+#include "core/fields.h"
 
 // What a batch came to.
 
@@ -75,7 +75,11 @@ std::vector<Row> rows_of(const Plan& plan, const std::map<std::string, History>&
 
 Summary summarize(std::span<const Row> rows);
 
-/// For programs; with the rows, a document a session.
-Json json_of(const Summary& summary, std::span<const Row> rows);
+/// What a batch came to, for programs.
+struct SummaryDocument {
+  Summary summary;
+  std::vector<Row> rows;
+};
+void describe(Fields& fields, SummaryDocument& document);
 
 }  // namespace weft::batch

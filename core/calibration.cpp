@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/calibration_parts.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/iso_time.h"
 #include "core/same_camera.h"
@@ -35,14 +36,13 @@ Result<void> check_digest(const fs::path& file, const Json& expected) {
 // One part, if calibration.json names it, after its digest has been checked.
 template <typename T>
 Result<std::optional<T>> read_part(const fs::path& folder, const Json& parts, const char* name,
-                                   const char* schema,
-                                   Result<T> (*from_json)(const Json&, const std::string&)) {
+                                   const char* schema) {
   if (!parts.contains(name)) return std::optional<T>();
   const fs::path file = folder / name;
   if (Result<void> same = check_digest(file, parts[name]); !same) return std::move(same).error();
   const Result<Json> json = read_json(file, schema, 1);
   if (!json) return json.error();
-  Result<T> part = from_json(*json, file.string());
+  Result<T> part = read_fields<T>(*json, file.string(), Naming::kFromOne);
   if (!part) return std::move(part).error();
   return std::optional<T>(std::move(*part));
 }
@@ -58,8 +58,11 @@ Result<std::string> id_of(const fs::path& folder, std::map<std::string, std::str
 
 using Digests = std::map<std::string, std::string>;
 
-Result<void> write_part(const fs::path& folder, const char* name, const Json& json, Digests& digests) {
-  if (Result<void> written = write_json(folder / name, json); !written) return written;
+template <typename Part>
+Result<void> write_part(const fs::path& folder, const char* name, const Part& part, Digests& digests) {
+  Json document = {{"schema", schema_name(part)}};
+  write_fields(document, part);
+  if (Result<void> written = write_json(folder / name, document); !written) return written;
   Result<std::string> digest = sha256_of_file(folder / name);
   if (!digest) return std::move(digest).error();
   digests[name] = std::move(*digest);
@@ -79,13 +82,13 @@ Result<void> write_parts(const fs::path& folder, const Calibration& c, Digests& 
   Result<void> written;
   if (c.camera) {
     const CameraPart part = {*c.camera, c.camera_covariance, c.fiducials, c.spread, c.lateral};
-    written = write_part(folder, kCameraFile, json_of(part), digests);
+    written = write_part(folder, kCameraFile, part, digests);
   }
-  if (written && c.response) written = write_part(folder, kResponseFile, json_of(*c.response), digests);
-  if (written && c.color) written = write_part(folder, kColorFile, json_of(*c.color), digests);
+  if (written && c.response) written = write_part(folder, kResponseFile, *c.response, digests);
+  if (written && c.color) written = write_part(folder, kColorFile, *c.color, digests);
   if (written && c.lights) {
     const LightsPart part = {*c.lights, c.patches, c.light_covariance};
-    written = write_part(folder, kLightsFile, json_of(part), digests);
+    written = write_part(folder, kLightsFile, part, digests);
   }
   if (written && c.hot_picture) written = copy_part(*c.hot_picture, folder, kHotFile, digests);
   return written;
@@ -126,14 +129,8 @@ Result<void> write_reports(const fs::path& from, const fs::path& folder, std::sp
 Result<void> write_subject(const fs::path& folder, const CalibrationSubject& subject, const Digests& digests,
                            const Json& before) {
   const char* minor = subject.focal_length_mm > 0 ? ".2" : subject.measured.empty() ? "" : ".1";
-  Json document = {{"schema", fmt::format("{}/1{}", kCalibrationSchema, minor)},
-                   {"rig", subject.rig},
-                   {"camera_model", subject.camera_model},
-                   {"camera_serial", subject.camera_serial},
-                   {"f_number", subject.f_number},
-                   {"albedo_scale", name_of(subject.albedo_scale)}};
-  if (!subject.measured.empty()) document["measured"] = subject.measured;
-  if (subject.focal_length_mm > 0) document["focal_length_mm"] = subject.focal_length_mm;
+  Json document = {{"schema", fmt::format("{}/1{}", kCalibrationSchema, minor)}};
+  write_fields(document, subject);
   document["parts"] = digests;
   for (const auto& [name, value] : before.items()) {
     if (document.contains(name) || name == "measured" || name == "focal_length_mm") continue;
@@ -149,6 +146,18 @@ Error there_is_one(const fs::path& folder) {
 }
 
 }  // namespace
+
+void describe(Fields& fields, CalibrationSubject& s) {
+  fields.value({"rig", "Its name", {}, kMustSay}, s.rig);
+  fields.value({"camera_model", "As the camera names itself", {}, kMustSay}, s.camera_model);
+  fields.value({"camera_serial", "Its serial number", {}, kMustSay}, s.camera_serial);
+  fields.value({"f_number", "Aperture", {}, kMustSay}, s.f_number);
+  fields.choice({"albedo_scale", "Whether albedo is a reflectance", {}, kMustSay}, s.albedo_scale,
+                kAlbedoScaleNames);
+  fields.value({"measured", "When, ISO 8601; since 1.1", {}, kUnlessEmpty}, s.measured);
+  fields.value({"focal_length_mm", "That the lens was set to; since 1.2", kAboveZero, kUnlessEmpty},
+               s.focal_length_mm);
+}
 
 std::optional<double> Response::exposure_ratio(double exposure_us, double to_exposure_us) const {
   for (const ExposureRatio& e : exposure_ratios) {
@@ -177,17 +186,9 @@ Result<Calibration> read_calibration(const fs::path& folder) {
   if (!document) return document.error();
   JsonFields fields(*document, file.string());
   Calibration calibration;
-  CalibrationSubject& subject = calibration.subject;
-  subject.rig = fields.text("rig");
-  subject.camera_model = fields.text("camera_model");
-  subject.camera_serial = fields.text("camera_serial");
-  subject.f_number = fields.number("f_number");
-  subject.albedo_scale = fields.one_of<AlbedoScale>("albedo_scale", kAlbedoScaleNames);
-  subject.measured = fields.text_or("measured", "");
-  if (const auto focal_mm = fields.optional_number("focal_length_mm")) {
-    subject.focal_length_mm = *focal_mm;
-    if (!(*focal_mm > 0)) fields.reject("focal_length_mm", "must be above 0");
-  }
+  Result<CalibrationSubject> subject = read_fields<CalibrationSubject>(*document, file.string());
+  if (!subject) return std::move(subject).error();
+  calibration.subject = std::move(*subject);
   const Json& parts = fields.object("parts");
   std::map<std::string, std::string> digests;
   for (const auto& [name, digest] : parts.items()) {
@@ -199,7 +200,7 @@ Result<Calibration> read_calibration(const fs::path& folder) {
   }
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
 
-  auto camera = read_part<CameraPart>(folder, parts, kCameraFile, "weft.camera", camera_part_from_json);
+  auto camera = read_part<CameraPart>(folder, parts, kCameraFile, "weft.camera");
   if (!camera) return std::move(camera).error();
   if (*camera) {
     calibration.camera = (*camera)->model;
@@ -208,13 +209,13 @@ Result<Calibration> read_calibration(const fs::path& folder) {
     calibration.spread = (*camera)->spread;
     calibration.lateral = (*camera)->lateral;
   }
-  auto response = read_part<Response>(folder, parts, kResponseFile, "weft.response", response_from_json);
+  auto response = read_part<Response>(folder, parts, kResponseFile, "weft.response");
   if (!response) return std::move(response).error();
   calibration.response = *response;
-  auto color = read_part<ColorTransform>(folder, parts, kColorFile, "weft.color", color_from_json);
+  auto color = read_part<ColorTransform>(folder, parts, kColorFile, "weft.color");
   if (!color) return std::move(color).error();
   calibration.color = std::move(*color);
-  auto lights = read_part<LightsPart>(folder, parts, kLightsFile, "weft.lights", lights_part_from_json);
+  auto lights = read_part<LightsPart>(folder, parts, kLightsFile, "weft.lights");
   if (!lights) return std::move(lights).error();
   if (*lights) {
     calibration.lights = std::move((*lights)->lights);

@@ -10,7 +10,7 @@
 
 #include "core/albedo_scale.h"
 #include "core/camera.h"
-#include "core/json_document.h"
+#include "core/fields.h"
 #include "core/lateral_color.h"
 #include "core/lights.h"
 #include "core/point_spread.h"
@@ -67,6 +67,7 @@ struct CalibrationSubject {
   std::string measured = {};   ///< when, ISO 8601; empty where nobody said
   double focal_length_mm = 0;  ///< that the lens was set to; 0 where nobody said
 };
+void describe(Fields& fields, CalibrationSubject& subject);
 
 /// A square tag that stays on the table beside the cloth.
 struct Fiducial {

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/calibration.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/fields.h"
 
-// The documents of a calibration's parts. Readers return kBadData with the field and `where`, the file.
+// The documents of a calibration's parts. Each has the lowest version that says all of it.
 
 namespace weft {
 
@@ -21,16 +19,16 @@ struct CameraPart {
   std::optional<PointSpread> spread;
   std::optional<LateralColor> lateral;
 };
-Json json_of(const CameraPart& part);
-Result<CameraPart> camera_part_from_json(const Json& json, const std::string& where);
+void describe(Fields& fields, CameraPart& part);
+const char* schema_name(const CameraPart& part);
 
 /// response.json
-Json json_of(const Response& response);
-Result<Response> response_from_json(const Json& json, const std::string& where);
+void describe(Fields& fields, Response& response);
+const char* schema_name(const Response& response);
 
 /// color.json
-Json json_of(const ColorTransform& color);
-Result<ColorTransform> color_from_json(const Json& json, const std::string& where);
+void describe(Fields& fields, ColorTransform& color);
+const char* schema_name(const ColorTransform& color);
 
 /// lights.json
 struct LightsPart {
@@ -38,7 +36,7 @@ struct LightsPart {
   std::vector<WhitePatch> patches;
   std::optional<ParameterCovariance> covariance;
 };
-Json json_of(const LightsPart& part);
-Result<LightsPart> lights_part_from_json(const Json& json, const std::string& where);
+void describe(Fields& fields, LightsPart& part);
+const char* schema_name(const LightsPart& part);
 
 }  // namespace weft

@@ -4,26 +4,31 @@
 #include <optional>
 
 #include "core/error_kind.h"
+#include "core/field_json.h"
 
 namespace weft {
 
+void describe(Fields& fields, Error& e) {
+  std::string kind = name_of(e.kind);
+  fields.value({"kind", "For programs", {}, kMustSay}, kind);
+  e.kind = error_kind_of(kind).value_or(ErrorKind::kProtocol);
+  fields.value({"what", "What happened", {}, kMustSay}, e.what);
+  fields.value({"where", "File, key or device", {}, kMustSay}, e.where);
+  fields.value({"why", "With its numbers", {}, kMustSay}, e.why);
+  fields.value({"remedy", "What to do", {}, kMustSay}, e.remedy);
+}
+
 Json json_of(const Error& error) {
-  return {{"kind", name_of(error.kind)},
-          {"what", error.what},
-          {"where", error.where},
-          {"why", error.why},
-          {"remedy", error.remedy}};
+  return object_of(error);
 }
 
 Error error_of_json(const Json& document, const std::string& where) {
-  const Error unknown = {ErrorKind::kProtocol, "what came is no error of weft", where,
-                         document.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 200), ""};
-  if (!document.is_object()) return unknown;
-  JsonFields fields(document, where);
-  const std::optional<ErrorKind> kind = error_kind_of(fields.text("kind"));
-  const Error error = {kind.value_or(ErrorKind::kProtocol), fields.text("what"), fields.text("where"),
-                       fields.text("why"), fields.text("remedy")};
-  return kind && fields.status() ? error : unknown;
+  Error error;
+  JsonReader reader(document, where);
+  describe(reader, error);
+  if (reader.status() && error_kind_of(document["kind"].get<std::string>())) return error;
+  return {ErrorKind::kProtocol, "what came is no error of weft", where,
+          document.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 200), ""};
 }
 
 }  // namespace weft

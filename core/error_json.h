@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/json_document.h"
+#include "core/fields.h"
 #include "core/result.h"
 
 namespace weft {
+
+void describe(Fields& fields, Error& error);
 
 /// {"kind", "what", "where", "why", "remedy"}: an error for another process.
 Json json_of(const Error& error);

@@ -27,6 +27,12 @@ const char* name_of(ErrorKind kind) {
   return std::ranges::find(kNames, kind, &Row::first)->second;
 }
 
+std::vector<const char*> error_kind_names() {
+  std::vector<const char*> names;
+  for (const auto& [kind, name] : kNames) names.push_back(name);
+  return names;
+}
+
 std::optional<ErrorKind> error_kind_of(std::string_view name) {
   const auto* const row = std::ranges::find(kNames, name, &Row::second);
   return row == kNames.end() ? std::nullopt : std::optional(row->first);

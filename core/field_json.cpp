@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 namespace weft {
@@ -26,6 +27,25 @@ T read_one(JsonFields& fields, const char* name) {
     return fields.text(name);
 }
 
+constexpr double kMostCount = 9007199254740992;  // 2^53: what a double holds
+
+bool is_row(const Json& row, int columns) {
+  return row.is_array() && row.size() == static_cast<std::size_t>(columns) &&
+         std::ranges::all_of(row, [](const Json& each) { return each.is_number(); });
+}
+
+bool fits(const Json& list, NumberShape shape) {
+  if (shape.columns == 0) return is_row(list, shape.rows);
+  return (shape.rows == 0 || list.size() == static_cast<std::size_t>(shape.rows)) &&
+         std::ranges::all_of(list, [&](const Json& row) { return is_row(row, shape.columns); });
+}
+
+std::string rule_of(NumberShape shape) {
+  if (shape.columns == 0) return fmt::format("must be {} numbers", shape.rows);
+  if (shape.rows == 0) return fmt::format("must be lists of {} numbers", shape.columns);
+  return fmt::format("must be {} lists of {} numbers", shape.rows, shape.columns);
+}
+
 }  // namespace
 
 template <typename T>
@@ -39,7 +59,8 @@ void JsonReader::hold(const Field& field, const T& read) {
 }
 
 bool JsonReader::is_said(const Field& field) const {
-  return field.need == Need::kMustSay || fields_.has(field.name);
+  if (field.need == kOrNull && fields_.has(field.name)) return !object_.at(field.name).is_null();
+  return field.need == kMustSay || fields_.has(field.name);
 }
 
 void JsonReader::require(bool holds, const char* field, const std::string& rule) {
@@ -58,7 +79,8 @@ void JsonReader::take(const Field& field, Value value) {
       [&]<typename T>(T* each) {
         using Read = typename Inner<T>::Type;
         if constexpr (std::is_same_v<T, Json>) {
-          *each = object_.at(field.name);
+          require(fields_.has(field.name), field.name, "is missing");
+          if (fields_.has(field.name)) *each = object_.at(field.name);
         } else if constexpr (kIsList<T>) {
           const Json list = list_of(field);
           T read;
@@ -66,7 +88,7 @@ void JsonReader::take(const Field& field, Value value) {
             const Json one = {{field.name, list[i]}};
             JsonFields within(one, fields_.where());
             read.push_back(read_one<Read>(within, field.name));
-            if (const Result<void> ok = within.status(); !ok) error_ = error_ ? error_ : ok.error();
+            if (const Result<void> ok = within.status(); !ok && status()) error_ = ok.error();
             hold(field, read.back());
           }
           const auto count = static_cast<int>(read.size());
@@ -82,6 +104,25 @@ void JsonReader::take(const Field& field, Value value) {
       value);
 }
 
+void JsonReader::take_numbers(const Field& field, NumberShape shape, Json& numbers) {
+  if (!is_said(field)) return;
+  const Json& said = fields_.list(field.name);
+  if (!fields_.status()) return;
+  if (!fits(said, shape)) return require(false, field.name, rule_of(shape));
+  const Json flat = said.flatten();
+  require(std::ranges::all_of(flat, [&](const Json& each) { return field.range.holds(each.get<double>()); }),
+          field.name, rule_of(field.range));
+  if (fields_.status()) numbers = said;
+}
+
+void JsonReader::take_count(const Field& field, std::int64_t& count) {
+  if (!is_said(field)) return;
+  const double said = fields_.number(field.name);
+  require(said >= 0 && said <= kMostCount && said == std::floor(said), field.name,
+          "must be a whole number from 0");
+  if (fields_.status()) count = static_cast<std::int64_t>(said);
+}
+
 void JsonReader::choose(const Field& field, Words words, std::size_t /*now*/,
                         const std::function<void(std::size_t)>& choose) {
   if (is_said(field)) choose(fields_.place_of(field.name, words));
@@ -92,7 +133,7 @@ void JsonReader::read_inside(const Json& object, const std::string& name,
   JsonReader reader(object, fmt::format("{}: {}", fields_.where(), name), naming_);
   inside(reader);
   const Result<void> ok = reader.status();
-  if (!ok && !error_) error_ = ok.error();
+  if (!ok && status()) error_ = ok.error();
 }
 
 void JsonReader::enter(const Field& field, const std::function<void(Fields&)>& inside, bool /*is_default*/) {
@@ -108,10 +149,10 @@ void JsonReader::repeat(const Field& field, std::size_t /*count*/,
   if (!is_said(field)) return;
   const Json& list = fields_.list(field.name);
   std::string one = field.name;
-  if (one.ends_with('s')) one.pop_back();
+  if (one.ends_with('s')) one.resize(one.size() - (one.ends_with("ches") ? 2 : 1));
   resize(list.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::size_t number = i + (naming_ == Naming::kOfPeople ? 1 : 0);
+    const std::size_t number = i + (naming_ == Naming::kOfPrograms ? 0 : 1);
     read_inside(list[i], fmt::format("{} {}", one, number), [&](Fields& each) { inside(each, i); });
   }
 }
@@ -132,30 +173,36 @@ void JsonWriter::take(const Field& field, Value value) {
   std::visit(
       [&]<typename T>(T* each) {
         if constexpr (kIsOptional<T>) {
-          write(field, !each->has_value(), *each ? Json(**each) : Json());
+          write(field, !each->has_value() && field.need != kOrNull, *each ? Json(**each) : Json());
         } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
-          write(field, field.need == Need::kUnlessEmpty && each->empty(), each->string());
+          write(field, field.need == kUnlessEmpty && each->empty(), each->string());
         } else if constexpr (std::is_same_v<T, std::vector<std::filesystem::path>>) {
           Json paths = Json::array();
           for (const std::filesystem::path& path : *each) paths.push_back(path.string());
-          write(field, field.need == Need::kUnlessEmpty && each->empty(), std::move(paths));
+          write(field, field.need == kUnlessEmpty && each->empty(), std::move(paths));
         } else {
-          write(field, field.need == Need::kUnlessEmpty && *each == T(), *each);
+          write(field, field.need == kUnlessEmpty && *each == T(), *each);
         }
       },
       value);
 }
 
+void JsonWriter::take_numbers(const Field& field, NumberShape /*shape*/, Json& numbers) {
+  write(field, field.need == kUnlessEmpty && numbers.empty(), numbers);
+}
+
+void JsonWriter::take_count(const Field& field, std::int64_t& count) {
+  write(field, field.need == kUnlessEmpty && count == 0, count);
+}
+
 void JsonWriter::choose(const Field& field, Words words, std::size_t now,
                         const std::function<void(std::size_t)>& /*choose*/) {
-  write(field, field.need == Need::kUnlessEmpty && now == 0, words[now]);
+  write(field, field.need == kUnlessEmpty && now == 0, words[now]);
 }
 
 void JsonWriter::enter(const Field& field, const std::function<void(Fields&)>& inside, bool is_default) {
-  if (field.need == Need::kUnlessEmpty && is_default) {
-    object_.erase(field.name);
-    return;
-  }
+  if (is_default && field.need == kOrNull) return write(field, false, Json());
+  if (is_default && field.need == kUnlessEmpty) return write(field, true, Json());
   Json object = object_.value(field.name, Json::object());
   JsonWriter writer(object);
   inside(writer);
@@ -165,6 +212,7 @@ void JsonWriter::enter(const Field& field, const std::function<void(Fields&)>& i
 void JsonWriter::repeat(const Field& field, std::size_t count,
                         const std::function<void(std::size_t)>& /*resize*/,
                         const std::function<void(Fields&, std::size_t)>& inside) {
+  if (count == 0 && field.need == kUnlessEmpty) return write(field, true, Json());
   Json list = Json::array();
   for (std::size_t i = 0; i < count; ++i) {
     Json object = Json::object();
@@ -178,7 +226,7 @@ void JsonWriter::repeat(const Field& field, std::size_t count,
 Json property_of(const Field& field, const Fields::Value& value) {
   return std::visit(
       [&]<typename T>(const T* each) {
-        if constexpr (std::is_same_v<T, Json>) return Json{{"type", "object"}};
+        if constexpr (std::is_same_v<T, Json>) return Json{{"type", each->is_array() ? "array" : "object"}};
         Json schema = {{"type", type_of<typename Inner<T>::Type>()}};
         if (!field.words.empty()) schema["enum"] = field.words;
         if (field.range.least == kAboveZero.least) {
@@ -193,7 +241,7 @@ Json property_of(const Field& field, const Fields::Value& value) {
           if (field.most > 0) schema["maxItems"] = field.most;
         }
         if constexpr (std::is_arithmetic_v<T>) {
-          if (field.need == Need::kMaySay) schema["default"] = *each;
+          if (field.need == kMaySay) schema["default"] = *each;
         } else if constexpr (std::is_same_v<T, std::string>) {
           if (!each->empty()) schema["default"] = *each;
         }
@@ -225,25 +273,50 @@ void JsonSchema::need_one(const std::vector<const char*>& fields) {
   rules_.push_back({{"anyOf", std::move(one)}});
 }
 
-void JsonSchema::add(const Field& field, Json schema) {
+void JsonSchema::add(const Field& field, Json schema, bool may_be_none) {
   if (!field.says.empty()) schema["description"] = field.says;
-  if (field.need == Need::kMustSay) needed_.push_back(field.name);
+  if (field.need == kOrNull && schema.contains("type")) schema["type"] = {schema["type"], "null"};
+  const bool is_written = field.need == kOrNull || (field.need == kMaySay && !may_be_none);
+  if (field.need == kMustSay || (is_written && documents_ == SchemaOf::kWritten))
+    needed_.push_back(field.name);
+  if (documents_ == SchemaOf::kWritten) schema.erase("default");
   properties_[field.name] = std::move(schema);
 }
 
 void JsonSchema::take(const Field& field, Value value) {
-  add(field, property_of(field, value));
+  const bool may_be_none = std::visit([]<typename T>(const T*) { return kIsOptional<T>; }, value);
+  add(field, property_of(field, value), may_be_none);
+}
+
+void JsonSchema::take_numbers(const Field& field, NumberShape shape, Json& /*numbers*/) {
+  const auto list_of = [](Json each, int count) {
+    Json list = {{"type", "array"}, {"items", std::move(each)}};
+    if (count > 0) list["minItems"] = list["maxItems"] = count;
+    return list;
+  };
+  const Json number = {{"type", "number"}};
+  add(field, list_of(shape.columns == 0 ? number : list_of(number, shape.columns), shape.rows));
+}
+
+void JsonSchema::take_count(const Field& field, std::int64_t& /*count*/) {
+  add(field, {{"type", "integer"}, {"minimum", 0}});
+}
+
+void JsonSchema::only_if(bool /*holds*/, const std::function<void()>& walk) {
+  const Json needed = needed_;
+  walk();
+  needed_ = needed;
 }
 
 void JsonSchema::choose(const Field& field, Words words, std::size_t now,
                         const std::function<void(std::size_t)>& /*choose*/) {
   Json schema = {{"type", "string"}, {"enum", words}};
-  if (field.need != Need::kMustSay) schema["default"] = words[now];
+  if (field.need != kMustSay) schema["default"] = words[now];
   add(field, std::move(schema));
 }
 
 void JsonSchema::enter(const Field& field, const std::function<void(Fields&)>& inside, bool /*is_default*/) {
-  JsonSchema within;
+  JsonSchema within(documents_);
   inside(within);
   add(field, within.schema());
 }
@@ -252,7 +325,7 @@ void JsonSchema::repeat(const Field& field, std::size_t /*count*/,
                         const std::function<void(std::size_t)>& resize,
                         const std::function<void(Fields&, std::size_t)>& inside) {
   resize(1);
-  JsonSchema within;
+  JsonSchema within(documents_);
   inside(within, 0);
   add(field, {{"type", "array"}, {"items", within.schema()}});
 }

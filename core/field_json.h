@@ -3,6 +3,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/fields.h"
 #include "core/json_document.h"
@@ -10,9 +11,9 @@
 
 namespace weft {
 
-/// How a refusal names what is within: "shot 0" and "solver" of a program's document; "led 1" and "[scan]" of
-/// what a person wrote in TOML.
-enum class Naming { kOfPrograms, kOfPeople };
+/// How a refusal names what is within: "shot 0" and "solver" of a program's document; "led 1" where people
+/// count too; "led 1" and "[scan]" of what a person wrote in TOML.
+enum class Naming { kOfPrograms, kFromOne, kOfPeople };
 
 /// Reads the fields of an object over the values that are there.
 class JsonReader final : public Fields {
@@ -27,6 +28,8 @@ class JsonReader final : public Fields {
 
  private:
   void take(const Field& field, Value value) override;
+  void take_numbers(const Field& field, NumberShape shape, Json& numbers) override;
+  void take_count(const Field& field, std::int64_t& count) override;
   void choose(const Field& field, Words words, std::size_t now,
               const std::function<void(std::size_t)>& choose) override;
   void enter(const Field& field, const std::function<void(Fields&)>& inside, bool is_default) override;
@@ -54,6 +57,8 @@ class JsonWriter final : public Fields {
 
  private:
   void take(const Field& field, Value value) override;
+  void take_numbers(const Field& field, NumberShape shape, Json& numbers) override;
+  void take_count(const Field& field, std::int64_t& count) override;
   void choose(const Field& field, Words words, std::size_t now,
               const std::function<void(std::size_t)>& choose) override;
   void enter(const Field& field, const std::function<void(Fields&)>& inside, bool is_default) override;
@@ -68,37 +73,48 @@ class JsonWriter final : public Fields {
 /// What one field may hold, as JSON Schema says it, with its default.
 Json property_of(const Field& field, const Fields::Value& value);
 
+/// Of which documents a schema is: of all that a reader takes, or of what a writer of today makes, which
+/// always has the fields that it may leave out of older ones.
+enum class SchemaOf { kRead, kWritten };
+
 /// Says what an object may have, as JSON Schema does (2020-12).
 class JsonSchema : public Fields {
  public:
+  explicit JsonSchema(SchemaOf documents = SchemaOf::kRead) : documents_(documents) {}
+
   /// {"type": "object", "properties": ...}
   Json schema() const;
 
   void exclude(const char* field, const char* other) override;
   void need(const char* field, const char* other) override;
   void need_one(const std::vector<const char*>& fields) override;
+  void only_if(bool holds, const std::function<void()>& walk) override;
 
  protected:
   void take(const Field& field, Value value) override;
+  void take_numbers(const Field& field, NumberShape shape, Json& numbers) override;
+  void take_count(const Field& field, std::int64_t& count) override;
   void choose(const Field& field, Words words, std::size_t now,
               const std::function<void(std::size_t)>& choose) override;
   void enter(const Field& field, const std::function<void(Fields&)>& inside, bool is_default) override;
   void repeat(const Field& field, std::size_t count, const std::function<void(std::size_t)>& resize,
               const std::function<void(Fields&, std::size_t)>& inside) override;
 
-  void add(const Field& field, Json schema);
+  void add(const Field& field, Json schema, bool may_be_none = false);
   bool has(const char* field) const { return properties_.contains(field); }
 
  private:
+  SchemaOf documents_;
   Json properties_ = Json::object(), needed_ = Json::array();
   Json needed_beside_ = Json::object(), rules_ = Json::array();
 };
 
 /// The fields of what is described, read from an object over their defaults. kBadData.
 template <typename Described>
-Result<Described> read_fields(const Json& object, const std::string& where) {
+Result<Described> read_fields(const Json& object, const std::string& where,
+                              Naming naming = Naming::kOfPrograms) {
   Described read;
-  JsonReader reader(object, where);
+  JsonReader reader(object, where, naming);
   describe(reader, read);
   if (Result<void> ok = reader.status(); !ok) return std::move(ok).error();
   return read;
@@ -110,10 +126,37 @@ void write_fields(Json& object, Described described) {
   describe(writer, described);
 }
 
+/// The same as a new object.
 template <typename Described>
-Json schema_of() {
-  Described described;
-  JsonSchema schema;
+Json object_of(Described described) {
+  Json object = Json::object();
+  write_fields(object, std::move(described));
+  return object;
+}
+
+/// A list of such, read from one. kBadData.
+template <typename Described>
+Result<std::vector<Described>> read_list(const Json& list, const std::string& where) {
+  std::vector<Described> read;
+  for (const Json& each : list) {
+    Result<Described> one = read_fields<Described>(each, where);
+    if (!one) return std::move(one).error();
+    read.push_back(std::move(*one));
+  }
+  return read;
+}
+
+template <typename Described>
+Json list_of(const std::vector<Described>& described) {
+  Json list = Json::array();
+  for (const Described& each : described) list.push_back(object_of(each));
+  return list;
+}
+
+template <typename Described>
+Json schema_of(SchemaOf documents = SchemaOf::kRead) {
+  Described described = {};
+  JsonSchema schema(documents);
   describe(schema, described);
   return schema.schema();
 }

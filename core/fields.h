@@ -4,6 +4,7 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -16,6 +17,7 @@
 
 #include "core/json_document.h"
 #include "core/number.h"
+#include "core/vec.h"
 
 // Each thing that people fill in or that a file keeps says its fields once, in a function beside its struct:
 //
@@ -26,10 +28,18 @@
 // What reads, writes, checks or explains it is a Fields that the function walks over: the command line, the
 // body of a call, a JSON document, its schema (docs/decisions/0016).
 
+template <>
+struct nlohmann::adl_serializer<weft::Vec3> {
+  static void to_json(weft::Json& json, const weft::Vec3& v) { json = {v.x, v.y, v.z}; }
+  static void from_json(const weft::Json& json, weft::Vec3& v) {
+    v = {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
+  }
+};
+
 namespace weft {
 
 inline constexpr double kMostNumber = std::numeric_limits<double>::max();
-inline constexpr NumberRange kAnyNumber = {-kMostNumber, kMostNumber};
+inline constexpr NumberRange kAnyNumber = {};
 inline constexpr NumberRange kNotNegative = {0, kMostNumber};
 inline constexpr NumberRange kAboveZero = {std::numeric_limits<double>::min(), kMostNumber};
 
@@ -53,10 +63,13 @@ struct NumberUnit {
 
 /// When a field must be said, and when a document leaves it out.
 enum class Need {
-  kMaySay,      ///< it has a default, and is always written
-  kMustSay,     ///< a reader refuses what has no such field
-  kUnlessEmpty  ///< it has a default, and is written where it differs from "", the first word or nothing
+  kMaySay,       ///< it has a default, and is always written
+  kMustSay,      ///< a reader refuses what has no such field
+  kUnlessEmpty,  ///< it has a default, and is written where it differs from "", the first word or nothing
+  kOrNull        ///< it is always written, as null where there is none
 };
+
+using enum Need;
 
 /// Who may say a field.
 enum class Said {
@@ -113,6 +126,21 @@ constexpr bool kIsOptional = false;
 template <typename T>
 constexpr bool kIsOptional<std::optional<T>> = true;
 
+/// How numbers of a document are nested: {3, 0} is a list of three, {0, 2} any number of pairs.
+struct NumberShape {
+  int rows = 0, columns = 0;
+};
+template <typename T>
+constexpr NumberShape kShape = {-1, -1};  // no numbers in a shape
+template <>
+inline constexpr NumberShape kShape<Vec3> = {3, 0};
+template <std::size_t N>
+constexpr NumberShape kShape<std::array<double, N>> = {N, 0};
+template <typename Row, std::size_t N>
+requires(kShape<Row>.columns == 0) constexpr NumberShape kShape<std::array<Row, N>> = {N, kShape<Row>.rows};
+template <typename Row>
+requires(kShape<Row>.columns == 0) constexpr NumberShape kShape<std::vector<Row>> = {0, kShape<Row>.rows};
+
 /// Walks over the fields of a struct, in their order. What is walked over must live as long as the visitor.
 class Fields {
  public:
@@ -126,7 +154,17 @@ class Fields {
 
   template <typename T>
   void value(const Field& field, T& value) {
-    take(field, Value(&value));
+    if constexpr (kShape<T>.rows >= 0) {
+      Json numbers = value;
+      take_numbers(field, kShape<T>, numbers);
+      value = numbers.get<T>();
+    } else if constexpr (std::same_as<T, std::int64_t> || std::same_as<T, std::uint64_t>) {
+      auto count = static_cast<std::int64_t>(value);
+      take_count(field, count);
+      value = static_cast<T>(count);
+    } else {
+      take(field, Value(&value));
+    }
   }
   /// An enum by the name of its value; `words` has one a value, in their order.
   template <typename Enum, std::size_t N>
@@ -159,6 +197,11 @@ class Fields {
         [&values](Fields& inside, std::size_t i) { describe(inside, values[i]); });
   }
 
+  /// Fields that only some have.
+  virtual void only_if(bool holds, const std::function<void()>& walk) {
+    if (holds) walk();
+  }
+
   /// What a field must keep to beside its range: "must be above 0 for a lit shot".
   virtual void require(bool /*holds*/, const char* /*field*/, const std::string& /*rule*/) {}
   /// At most one of the two may be said.
@@ -174,6 +217,9 @@ class Fields {
   virtual void take(const Field& field, Value value) = 0;
   virtual void choose(const Field& field, Words words, std::size_t now,
                       const std::function<void(std::size_t)>& choose) = 0;
+  /// What documents alone have: numbers in a shape, and counts of bytes and pixels, to 2^53.
+  virtual void take_numbers(const Field& /*field*/, NumberShape /*shape*/, Json& /*numbers*/) {}
+  virtual void take_count(const Field& /*field*/, std::int64_t& /*count*/) {}
   /// Where nothing is nested, as on a command line, the fields of a struct stand among the others.
   virtual void enter(const Field& field, const std::function<void(Fields&)>& inside, bool is_default);
   /// Where there is no list, there is none of these.

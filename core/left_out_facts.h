@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/fields.h"
 
 namespace weft {
 
@@ -43,7 +42,6 @@ inline constexpr const char* kLeftOutBlindSpot =
     "A scale and a slow tilt that all lights share cannot be seen this way.";
 
 /// {"median", "rms", "noise_median", "noise_rms", "readings", "lights": [{"light", and the same}]}
-Json json_of(const LeftOutFacts& facts);
-Result<LeftOutFacts> left_out_facts_from_json(const Json& json, const std::string& where);
+void describe(Fields& fields, LeftOutFacts& facts);
 
 }  // namespace weft

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <concepts>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,7 +33,7 @@ std::vector<std::string_view> words_of_line(std::string_view line);
 
 /// What a number may be, both ends with it.
 struct NumberRange {
-  double least = 0, most = 0;
+  double least = -std::numeric_limits<double>::max(), most = std::numeric_limits<double>::max();
   constexpr bool holds(double number) const { return number >= least && number <= most; }
 };
 

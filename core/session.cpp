@@ -18,7 +18,6 @@ namespace {
 constexpr const char* kSessionSchema = "weft.session";
 constexpr std::array<const char*, 5> kRoles = {"lit", "dark", "repeat", "bracket", "below"};
 constexpr std::array<const char*, 3> kPolarisers = {"none", "parallel", "crossed"};
-constexpr Need kMustSay = Need::kMustSay, kUnlessEmpty = Need::kUnlessEmpty;
 
 bool stays_inside(const std::filesystem::path& file) {
   if (file.empty() || file.is_absolute()) return false;

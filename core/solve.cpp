@@ -4,78 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <array>
 #include <numbers>
-#include <utility>
+
+#include "core/field_json.h"
 
 namespace weft {
 namespace {
 
-constexpr const char* kCamera = "camera";
-constexpr const char* kRec709 = "rec709";
-
-Result<SolveError> error_from_json(const Json& json, const std::string& where) {
-  JsonFields fields(json, where);
-  const SolveError error = {fields.number("mean_deg"), fields.number("median_deg"), fields.number("p95_deg"),
-                            fields.number("max_deg")};
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  return error;
-}
-
-Result<SolvePrice> price_from_json(const Json& json, const std::string& where) {
-  JsonFields fields(json, where);
-  SolvePrice price = {fields.number("seconds"), fields.number("mean_deg"), fields.number("solved"), {}};
-  if (fields.has("parts_s")) price.parts_s = json["parts_s"];
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  return price;
-}
-
-// Documents of early versions do not have every bit.
-Result<StatusCounts> status_from_json(const Json& json, const std::string& where) {
-  JsonFields fields(json, where);
-  StatusCounts counts;
-  for (std::size_t i = 0; i < kStatusNames.size(); ++i) {
-    if (fields.has(kStatusNames[i].name)) counts.pixels[i] = fields.integer(kStatusNames[i].name);
-  }
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  return counts;
-}
-
-// What not every solve has.
-Result<void> read_optional(const Json& document, const std::string& where, SolveFacts& facts) {
-  const JsonFields fields(document, where);
-  if (fields.has("error")) {
-    const Result<SolveError> error = error_from_json(document["error"], where + ": error");
-    if (!error) return error.error();
-    facts.error = *error;
-  }
-  for (const auto& [price, name] :
-       {std::pair{&facts.foretold, "foretold"}, std::pair{&facts.taken, "taken"}}) {
-    if (!fields.has(name)) continue;
-    Result<SolvePrice> read = price_from_json(document[name], where + ": " + name);
-    if (!read) return std::move(read).error();
-    *price = std::move(*read);
-  }
-  if (fields.has("check")) {
-    Result<LeftOutFacts> check = left_out_facts_from_json(document["check"], where + ": check");
-    if (!check) return std::move(check).error();
-    facts.check = std::move(*check);
-  }
-  return {};
-}
-
-std::vector<std::string> pictures_of(JsonFields& fields) {
-  std::vector<std::string> names;
-  if (!fields.has("pictures")) return names;
-  for (const Json& name : fields.list("pictures")) {
-    if (name.is_string()) {
-      names.push_back(name.get<std::string>());
-    } else {
-      fields.reject("pictures", "must be names of files");
-    }
-  }
-  return names;
-}
+constexpr std::array<const char*, 2> kColors = {"camera", "rec709"};
 
 }  // namespace
 
@@ -92,106 +29,105 @@ std::int64_t StatusCounts::with(StatusBit bit) const {
   return pixels.at(static_cast<std::size_t>(named - kStatusNames.begin()));
 }
 
-Json json_of(const StatusCounts& counts) {
-  Json json = Json::object();
+void describe(Fields& fields, StatusCounts& counts) {
   for (std::size_t i = 0; i < kStatusNames.size(); ++i) {
-    const bool is_said = (kStatusNames[i].bit & kHowSolved) == 0 || counts.pixels[i] > 0;
-    if (is_said) json[kStatusNames[i].name] = counts.pixels[i];
+    const bool is_how = (kStatusNames[i].bit & kHowSolved) != 0;
+    fields.value({kStatusNames[i].name, "Pixels that have this bit of status.png", kNotNegative,
+                  is_how ? kUnlessEmpty : kMaySay},
+                 counts.pixels[i]);
   }
-  return json;
 }
 
-Json json_of(const SolveError& error) {
-  return {{"mean_deg", error.mean_deg},
-          {"median_deg", error.median_deg},
-          {"p95_deg", error.p95_deg},
-          {"max_deg", error.max_deg}};
+void describe(Fields& fields, SolveError& e) {
+  fields.value({"mean_deg", "Between the normals and those of the truth, degrees", {}, kMustSay}, e.mean_deg);
+  fields.value({"median_deg", "The same", {}, kMustSay}, e.median_deg);
+  fields.value({"p95_deg", "The same: its 95th percentile", {}, kMustSay}, e.p95_deg);
+  fields.value({"max_deg", "The same", {}, kMustSay}, e.max_deg);
 }
 
-Json json_of(const SolvePrice& price) {
-  Json json = {{"seconds", price.seconds}, {"mean_deg", price.mean_deg}, {"solved", price.solved}};
-  if (!price.parts_s.is_null()) json["parts_s"] = price.parts_s;
-  return json;
+void describe(Fields& fields, SolvePrice& p) {
+  fields.value({"seconds", "Until solve.json is written", {}, kMustSay}, p.seconds);
+  fields.value({"mean_deg", "To expect of the share that is solved, degrees", {}, kMustSay}, p.mean_deg);
+  fields.value({"solved", "Share of the cloth that has a normal", {}, kMustSay}, p.solved);
+  fields.value({"parts_s", "Seconds by phase", {}, kUnlessEmpty}, p.parts_s);
 }
 
 double deg_of_whole(double mean_deg, double solved) {
   return solved * mean_deg + (1 - solved) * (180 / std::numbers::pi);
 }
 
-Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string& where) {
-  JsonFields fields(document, where);
-  SolveFacts facts;
-  facts.id = fields.text("id");
-  facts.solver_version = fields.integer("solver_version");
-  facts.method = fields.text("method");
-  facts.compression = fields.one_of<Compression>("compression", kCompressionNames);
-  facts.lights = fields.integer("lights");
-  facts.size = {fields.integer("width"), fields.integer("height")};
-  facts.albedo_scale = fields.one_of<AlbedoScale>("albedo_scale", kAlbedoScaleNames);
-  const std::string color = fields.text_or("color", kCamera);
-  if (color != kCamera && color != kRec709) fields.reject("color", "must be \"camera\" or \"rec709\"");
-  facts.is_rec709 = color == kRec709;
-  facts.pixels = fields.integer("pixels");
-  facts.pictures = pictures_of(fields);
-  const Json& status = fields.object("status");
-  const Json none = Json::array();
-  const Json& warnings = fields.has("warnings") ? fields.list("warnings") : none;
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+void describe(Fields& fields, RegisteredShot& s) {
+  fields.value({"led", "That was lit", {}, kMustSay}, s.led);
+  fields.value({"dx_px", "To the right, pixels"}, s.dx_px);
+  fields.value({"dy_px", "Down, pixels"}, s.dy_px);
+  fields.value({"turn_deg", "About the frame's centre, degrees"}, s.turn_deg);
+  fields.value({"sigma_px", "Standard deviation of the shift, pixels"}, s.sigma_px);
+  fields.value({"cost_deg", "That normals would be off for it, degrees"}, s.cost_deg);
+  fields.value({"corrected", "It was left out for it"}, s.is_corrected);
+  fields.value({"verdict", "still, left out, flagged or not registered"}, s.verdict);
+}
 
-  Result<StatusCounts> counts = status_from_json(status, where + ": status");
-  if (!counts) return std::move(counts).error();
-  facts.status = *counts;
-  Result<std::vector<Verdict>> verdicts = verdicts_from_json(warnings, where + ": warnings");
-  if (!verdicts) return std::move(verdicts).error();
-  facts.warnings = std::move(*verdicts);
-  if (Result<void> ok = read_optional(document, where, facts); !ok) return std::move(ok).error();
-  for (const auto& [part, name] : {std::pair{&facts.input, "input"},
-                                   {&facts.solved_by, "solved_by"},
-                                   {&facts.conditions, "conditions"},
-                                   {&facts.registration, "registration"},
-                                   {&facts.sigma_normal_deg, "sigma_normal_deg"},
-                                   {&facts.sharpening, "sharpening"},
-                                   {&facts.lateral_color, "lateral_color"},
-                                   {&facts.gates, "gates"},
-                                   {&facts.reference, "reference"},
-                                   {&facts.reflectance, "reflectance"}}) {
-    if (fields.has(name)) *part = document[name];
-  }
-  return facts;
+void describe(Fields& fields, GateFacts& g) {
+  constexpr std::array<const char*, 2> kVerdicts = {"under", "over"};
+  fields.value({"name", "What was measured"}, g.name);
+  fields.value({"value", "In its unit"}, g.value);
+  fields.value({"limit", "From which there is something to gain"}, g.limit);
+  fields.value({"unit", "Of both"}, g.unit);
+  fields.choice({"verdict", "Which side of the limit it is on"}, g.is_over, kVerdicts);
+}
+
+void describe(Fields& fields, SolvedBy& s) {
+  fields.value({"float32", "By the kernel"}, s.float32);
+  fields.value({"double", "By normal equations"}, s.in_double);
+  fields.value({"qr", "By QR"}, s.qr);
+  fields.value({"svd", "By SVD"}, s.svd);
+  fields.value({"unsolved", "Without a solution"}, s.unsolved);
+  fields.value({"rejected_readings", "Readings that were left out"}, s.rejected_readings);
+  fields.value({"robust_share", "Share of the blocks that are solved as robust does"}, s.robust_share);
+}
+
+void describe(Fields& fields, SolveFacts& f) {
+  fields.value({"id", "SHA-256 of its input, method and compression", {}, kMustSay}, f.id);
+  fields.value({"solver_version", "Rises whenever the bytes of a map may change", {}, kMustSay},
+               f.solver_version);
+  fields.value({"method", "That solved it", {}, kMustSay}, f.method);
+  fields.choice({"compression", "Of its EXR files", {}, kMustSay}, f.compression, kCompressionNames);
+  fields.value({"input", "All that it depends on: files by SHA-256, calibration, lights", {}, kUnlessEmpty},
+               f.input);
+  fields.value({"lights", "How many there are", {}, kMustSay}, f.lights);
+  fields.value({"width", "Of the maps, pixels", {}, kMustSay}, f.size.width);
+  fields.value({"height", "Of the maps, pixels", {}, kMustSay}, f.size.height);
+  fields.choice({"albedo_scale", "Whether albedo is a reflectance", {}, kMustSay}, f.albedo_scale,
+                kAlbedoScaleNames);
+  fields.choice({"color", "Of the albedo: the camera's channels, or linear Rec.709"}, f.is_rec709, kColors);
+  fields.value({"pixels", "With a solution", {}, kMustSay}, f.pixels);
+  fields.object({"status", "Pixels by bit of status.png", {}, kMustSay}, f.status);
+  fields.object({"solved_by", "Pixels by arithmetic", {}, kUnlessEmpty}, f.solved_by);
+  fields.value({"conditions", "Of the session", {}, kUnlessEmpty}, f.conditions);
+  fields.list({"registration", "How far each shot had moved"}, f.registration);
+  fields.value({"sigma_normal_deg", "Of the predicted angle, degrees", {}, kUnlessEmpty}, f.sigma_normal_deg);
+  fields.object({"check", "How well light that was left out is predicted", {}, kUnlessEmpty}, f.check);
+  fields.value({"sharpening", "Where the lens's spread was undone", {}, kUnlessEmpty}, f.sharpening);
+  fields.value({"lateral_color", "Where it was taken out", {}, kUnlessEmpty}, f.lateral_color);
+  fields.list({"warnings", "What speaks against it"}, f.warnings);
+  fields.value({"pictures", "Files in its folder"}, f.pictures);
+  fields.list({"gates", "Of the level reference: whether there was anything to gain", {}, kUnlessEmpty},
+              f.gates);
+  fields.value({"reference", "What that level took out", {}, kUnlessEmpty}, f.reference);
+  fields.value({"reflectance", "Of the levels robust and reference: the lobe", {}, kUnlessEmpty},
+               f.reflectance);
+  fields.object({"error", "Against a truth", {}, kUnlessEmpty}, f.error);
+  fields.object({"foretold", "Where a price was asked before", {}, kUnlessEmpty}, f.foretold);
+  fields.object({"taken", "What it gave and took; since 1.1", {}, kUnlessEmpty}, f.taken);
+}
+
+Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string& where) {
+  return read_fields<SolveFacts>(document, where);
 }
 
 Json json_of(const SolveFacts& facts) {
-  Json json = {{"schema", fmt::format("{}/{}", kSolveProduct.schema, facts.taken ? "1.1" : "1")},
-               {"id", facts.id},
-               {"solver_version", facts.solver_version},
-               {"method", facts.method},
-               {"compression", name_of(facts.compression)},
-               {"input", facts.input},
-               {"lights", facts.lights},
-               {"width", facts.size.width},
-               {"height", facts.size.height},
-               {"albedo_scale", name_of(facts.albedo_scale)},
-               {"color", facts.is_rec709 ? kRec709 : kCamera},
-               {"pixels", facts.pixels},
-               {"status", json_of(facts.status)},
-               {"solved_by", facts.solved_by},
-               {"conditions", facts.conditions},
-               {"registration", facts.registration},
-               {"sigma_normal_deg", facts.sigma_normal_deg},
-               {"check", facts.check ? json_of(*facts.check) : Json()},
-               {"sharpening", facts.sharpening},
-               {"lateral_color", facts.lateral_color},
-               {"warnings", json_of(facts.warnings)},
-               {"pictures", facts.pictures},
-               {"gates", facts.gates},
-               {"reference", facts.reference},
-               {"reflectance", facts.reflectance},
-               {"error", facts.error ? json_of(*facts.error) : Json()},
-               {"foretold", facts.foretold ? json_of(*facts.foretold) : Json()},
-               {"taken", facts.taken ? json_of(*facts.taken) : Json()}};
-  for (auto field = json.begin(); field != json.end();) {
-    field = field->is_null() ? json.erase(field) : std::next(field);
-  }
+  Json json = {{"schema", fmt::format("{}/{}", kSolveProduct.schema, facts.taken ? "1.1" : "1")}};
+  write_fields(json, facts);
   return json;
 }
 

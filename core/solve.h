@@ -10,6 +10,7 @@
 
 #include "core/albedo_scale.h"
 #include "core/compression.h"
+#include "core/fields.h"
 #include "core/image.h"
 #include "core/json_document.h"
 #include "core/left_out_facts.h"
@@ -40,7 +41,7 @@ struct StatusCounts {
   friend bool operator==(const StatusCounts&, const StatusCounts&) = default;
 };
 /// {"SATURATED": 0, "SHADOWED": 21550, ...}; of kHowSolved only where a pixel has it.
-Json json_of(const StatusCounts& counts);
+void describe(Fields& fields, StatusCounts& counts);
 
 /// Angles between the normals and those of a truth.
 struct SolveError {
@@ -48,7 +49,7 @@ struct SolveError {
 
   friend bool operator==(const SolveError&, const SolveError&) = default;
 };
-Json json_of(const SolveError& error);
+void describe(Fields& fields, SolveError& error);
 
 /// What a solve gives and takes: as it was foretold, or as it came.
 struct SolvePrice {
@@ -59,7 +60,7 @@ struct SolvePrice {
 
   friend bool operator==(const SolvePrice&, const SolvePrice&) = default;
 };
-Json json_of(const SolvePrice& price);
+void describe(Fields& fields, SolvePrice& price);
 
 /// Cloth of which less has a normal is not called solved.
 inline constexpr double kLeastSolved = 0.5;
@@ -68,6 +69,39 @@ inline constexpr double kLeastSolved = 0.5;
 /// nothing is known, and straight up is one radian from a direction that may be any of the hemisphere, on the
 /// mean.
 double deg_of_whole(double mean_deg, double solved);
+
+/// How far the photograph of one light had moved.
+struct RegisteredShot {
+  int led = 0;
+  double dx_px = 0, dy_px = 0, turn_deg = 0;
+  double sigma_px = 0;        ///< standard deviation of the shift
+  double cost_deg = 0;        ///< that normals would be off for it
+  bool is_corrected = false;  ///< it was left out for it
+  std::string verdict;        ///< "still", "left out", "flagged" or "not registered"
+
+  friend bool operator==(const RegisteredShot&, const RegisteredShot&) = default;
+};
+void describe(Fields& fields, RegisteredShot& shot);
+
+/// What tells whether the level `reference` has anything to gain.
+struct GateFacts {
+  std::string name, unit;
+  double value = 0, limit = 0;
+  bool is_over = false;
+
+  friend bool operator==(const GateFacts&, const GateFacts&) = default;
+};
+void describe(Fields& fields, GateFacts& gate);
+
+/// Pixels by the arithmetic that solved them.
+struct SolvedBy {
+  std::int64_t float32 = 0, in_double = 0, qr = 0, svd = 0, unsolved = 0, rejected_readings = 0;
+  /// Share of the blocks that are solved as `robust` does; of the levels `robust` and `reference`.
+  std::optional<double> robust_share = {};
+
+  friend bool operator==(const SolvedBy&, const SolvedBy&) = default;
+};
+void describe(Fields& fields, SolvedBy& solved_by);
 
 /// What solve.json says of a solve.
 struct SolveFacts {
@@ -87,16 +121,21 @@ struct SolveFacts {
   std::optional<SolveError> error;     ///< where there is a truth
   std::optional<SolvePrice> foretold;  ///< where a price was asked before
   std::optional<SolvePrice> taken;     ///< none in documents of early versions
+  std::optional<SolvedBy> solved_by;
+  std::vector<RegisteredShot> registration;
+  std::vector<GateFacts> gates;  ///< of the level `reference`
 
   // Kept for people and passed on to the report; no program looks into them. Null where there is none.
-  Json input;                                ///< all that the id depends on besides method and compression
-  Json solved_by, conditions, registration;  ///< docs/formats.md
-  Json sigma_normal_deg;                     ///< docs/formats.md
-  Json sharpening;                           ///< where the spread of the lens is known
-  Json lateral_color;                        ///< where it was taken out
-  Json gates, reference;                     ///< of the level `reference`
-  Json reflectance;                          ///< of the levels `robust` and `reference`
+  Json input;             ///< all that the id depends on besides method and compression
+  Json conditions;        ///< docs/formats.md
+  Json sigma_normal_deg;  ///< docs/formats.md
+  Json sharpening;        ///< where the spread of the lens is known
+  Json lateral_color;     ///< where it was taken out
+  Json reference;         ///< of the level `reference`
+  Json reflectance;       ///< of the levels `robust` and `reference`
 };
+
+void describe(Fields& fields, SolveFacts& facts);
 
 /// Reads solve.json, `where` being its name for messages. Documents of early versions have no color, warnings
 /// or pictures. kBadData.

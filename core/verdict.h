@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/fields.h"
 
 namespace weft {
 
@@ -18,10 +17,9 @@ struct Verdict {
   friend bool operator==(const Verdict&, const Verdict&) = default;
 };
 
+void describe(Fields& fields, Verdict& verdict);
+
 /// A list of {"name", "text", "remedy"}.
 Json json_of(const std::vector<Verdict>& verdicts);
-
-/// What json_of() made. kBadData of `where` for anything else.
-Result<std::vector<Verdict>> verdicts_from_json(const Json& list, const std::string& where);
 
 }  // namespace weft

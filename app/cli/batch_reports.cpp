@@ -19,6 +19,7 @@
 #include "app/jobs/batch/farm.h"
 #include "app/jobs/batch/merge_batch.h"
 #include "app/jobs/report.h"
+#include "core/field_json.h"
 #include "core/process.h"
 
 namespace weft::app {
@@ -68,7 +69,7 @@ Result<int> merge(const std::filesystem::path& plan, const CommonArguments& comm
   if (!report) return report.error();
   const BatchState& state = report->state;
   if (common.json) {
-    Json document = batch::json_of(state.summary, state.rows);
+    Json document = object_of(batch::SummaryDocument{state.summary, state.rows});
     document["verdicts"] = weft::json_of(verdicts_of(state));
     document["folder"] = report->folder.string();
     document["abandoned"] = report->abandoned;

@@ -16,6 +16,7 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/batch/solve_change.h"
+#include "core/field_json.h"
 
 namespace weft::app {
 namespace {
@@ -90,7 +91,7 @@ Result<int> compare_two_solves(const CompareArguments& a, const CommonArguments&
   if (!change) return change.error();
   const std::vector<std::string> worse = batch::regressions(*change);
   if (common.json) {
-    Json document = batch::json_of(*change);
+    Json document = object_of(*change);
     document["regressions"] = worse;
     print_json(document);
     return kDone;

@@ -19,6 +19,7 @@
 #include "app/jobs/solve_request.h"
 #include "capture/rig.h"
 #include "core/field_check.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/session.h"
 #include "library/current.h"
@@ -52,10 +53,10 @@ Json json_of(const SolveReport& report) {
             {"total", report.seconds.total}}},
           {"peak_bytes", peak_memory_bytes()},
           {"pixels", facts.pixels},
-          {"foretold", facts.foretold ? weft::json_of(*facts.foretold) : Json()},
-          {"taken", facts.taken ? weft::json_of(*facts.taken) : Json()},
-          {"status", json_of(facts.status)},
-          {"check", facts.check ? json_of(*facts.check) : Json()},
+          {"foretold", facts.foretold ? object_of(*facts.foretold) : Json()},
+          {"taken", facts.taken ? object_of(*facts.taken) : Json()},
+          {"status", object_of(facts.status)},
+          {"check", facts.check ? object_of(*facts.check) : Json()},
           {"warnings", json_of(facts.warnings)},
           {"pictures", facts.pictures}};
 }

@@ -11,6 +11,7 @@
 
 #include "app/jobs/facts_json.h"
 #include "app/jobs/reflectance.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "pipeline/cut.h"
 #include "pipeline/shifts.h"
@@ -137,7 +138,7 @@ LevelSeconds scaled(const SolveSeconds& cut, const SharedSeconds& shared, Size f
 }
 
 // What the reference level takes out of the readings, and why, as solve.json says it.
-std::string words_of(const Json& reference, const Json& gates) {
+std::string words_of(const Json& reference, const std::vector<GateFacts>& gates) {
   std::string words;
   for (const Json& stage : reference.at("stages")) {
     words += fmt::format("{}{}", words.empty() ? "takes out " : ", ", stage.get<std::string>());
@@ -146,11 +147,9 @@ std::string words_of(const Json& reference, const Json& gates) {
   if (words.empty())
     words = was_tried ? "left-out light is predicted no better without its effects" : "gates shut";
   const char* before = ": ";
-  for (const Json& gate : gates) {
-    const std::string unit = gate.at("unit");
-    words += fmt::format("{}{} {:.3g} of {:.3g}{}{}", before, gate.at("name").get<std::string>(),
-                         gate.at("value").get<double>(), gate.at("limit").get<double>(),
-                         unit.empty() ? "" : " ", unit);
+  for (const GateFacts& gate : gates) {
+    words += fmt::format("{}{} {:.3g} of {:.3g}{}{}", before, gate.name, gate.value, gate.limit,
+                         gate.unit.empty() ? "" : " ", gate.unit);
     before = ", ";
   }
   return words;
@@ -226,8 +225,8 @@ Result<Priced> price_level(const Photographs& photographs, const solver::MethodN
   Priced priced;
   priced.price = {*level.level, cut->expected, scaled(cut->seconds, shared, photographs.size, is_half), ""};
   if (level.level == solver::Level::kReference) {
-    priced.gates = cut->facts.gates;
-    priced.notes.push_back(words_of(cut->facts.reference, priced.gates));
+    priced.gates = list_of(cut->facts.gates);
+    priced.notes.push_back(words_of(cut->facts.reference, cut->facts.gates));
   }
   priced.notes.push_back(gloss_words(cut->facts.reflectance));
   return priced;

@@ -26,22 +26,16 @@ Json names_of(const pipeline::LightStages& stages) {
 
 }  // namespace
 
-Json json_of(const solver::Gates& gates) {
-  Json all = Json::array();
-  for (const solver::Gate& gate : gates.measured()) {
-    all.push_back({{"name", gate.name},
-                   {"value", gate.value},
-                   {"limit", gate.limit},
-                   {"unit", gate.unit},
-                   {"verdict", gate.is_over ? "over" : "under"}});
-  }
+std::vector<GateFacts> facts_of(const solver::Gates& gates) {
+  std::vector<GateFacts> all;
+  for (const solver::Gate& gate : gates.measured())
+    all.push_back({gate.name, gate.unit, gate.value, gate.limit, gate.is_over});
   return all;
 }
 
-Json json_of(const solver::SolveTally& tally) {
-  return {{"float32", tally.by_kernel}, {"double", tally.by_normal_equations},
-          {"qr", tally.by_qr},          {"svd", tally.by_svd},
-          {"unsolved", tally.unsolved}, {"rejected_readings", tally.rejected_readings}};
+SolvedBy facts_of(const solver::SolveTally& tally) {
+  return {tally.by_kernel, tally.by_normal_equations, tally.by_qr, tally.by_svd,
+          tally.unsolved,  tally.rejected_readings};
 }
 
 Json json_of(const pipeline::DeblurFacts& facts) {
@@ -100,19 +94,14 @@ std::vector<std::string> warnings_of(const pipeline::ReferenceFacts& facts) {
   return said;
 }
 
-Json json_of(const pipeline::SessionShifts& shifts, const std::vector<int>& leds) {
-  Json list = Json::array();
+std::vector<RegisteredShot> facts_of(const pipeline::SessionShifts& shifts, const std::vector<int>& leds) {
+  std::vector<RegisteredShot> list;
   for (std::size_t k = 0; k < shifts.shots.size(); ++k) {
     const pipeline::ShotShift& shot = shifts.shots[k];
     const solver::ShotRegistration& m = shot.measured;
-    list.push_back({{"led", k < leds.size() ? leds[k] : static_cast<int>(k) + 1},
-                    {"dx_px", m.shift.dx_px},
-                    {"dy_px", m.shift.dy_px},
-                    {"turn_deg", degrees(m.shift.turn)},
-                    {"sigma_px", m.sigma_px},
-                    {"cost_deg", m.cost_deg},
-                    {"corrected", shot.verdict == pipeline::ShiftVerdict::kLeftOut},
-                    {"verdict", verdict_of(shot, shifts.found)}});
+    list.push_back({k < leds.size() ? leds[k] : static_cast<int>(k) + 1, m.shift.dx_px, m.shift.dy_px,
+                    degrees(m.shift.turn), m.sigma_px, m.cost_deg,
+                    shot.verdict == pipeline::ShiftVerdict::kLeftOut, verdict_of(shot, shifts.found)});
   }
   return list;
 }

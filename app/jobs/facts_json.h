@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/json_document.h"
+#include "core/solve.h"
 #include "pipeline/deblur.h"
 #include "pipeline/reference.h"
 #include "pipeline/shifts.h"
@@ -15,11 +16,8 @@
 
 namespace weft::app {
 
-/// A list of {"name", "value", "limit", "unit", "verdict": "over" | "under"}.
-Json json_of(const solver::Gates& gates);
-
-/// How many pixels were solved in which way.
-Json json_of(const solver::SolveTally& tally);
+std::vector<GateFacts> facts_of(const solver::Gates& gates);
+SolvedBy facts_of(const solver::SolveTally& tally);
 
 /// {"sigma_px", "share"}.
 Json json_of(const pipeline::DeblurFacts& facts);
@@ -31,9 +29,7 @@ Json json_of(const pipeline::ReferenceFacts& facts);
 /// What the reference level could not do, a sentence each.
 std::vector<std::string> warnings_of(const pipeline::ReferenceFacts& facts);
 
-/// A list by shot of {"led", "dx_px", "dy_px", "turn_deg", "sigma_px", "cost_deg", "corrected", "verdict":
-/// "still" | "corrected" | "flagged" | "not registered"}. `leds` are the numbers of the lights, if they have
-/// any.
-Json json_of(const pipeline::SessionShifts& shifts, const std::vector<int>& leds);
+/// A shot each. `leds` are the numbers of the lights, if they have any.
+std::vector<RegisteredShot> facts_of(const pipeline::SessionShifts& shifts, const std::vector<int>& leds);
 
 }  // namespace weft::app

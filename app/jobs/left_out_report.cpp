@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/field_json.h"
 #include "core/percent.h"
 #include "report/html.h"
 #include "report/page.h"
@@ -66,7 +67,7 @@ std::optional<Verdict> verdict_of(const LeftOutFacts& facts, bool of_session,
 std::string left_out_section(const Json& report, const std::string& noun) {
   const auto found = report.find("check");
   if (found == report.end()) return "";
-  const Result<LeftOutFacts> facts = left_out_facts_from_json(*found, "check");
+  const Result<LeftOutFacts> facts = read_fields<LeftOutFacts>(*found, "check");
   if (!facts) return "";
   report::Table table = {{"", "median", "by noise", "rms", "by noise"}};
   table.rows.push_back(row_of("all", facts->all));

@@ -11,6 +11,7 @@
 
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/report_page.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/percent.h"
 #include "core/statistics.h"
@@ -531,10 +532,10 @@ Json report_document(const std::string& title, const SolveFacts& solve, const Ph
                               {"sigma_calibration_deg", maps.sigma_calibration_deg()}}) {
     if (!sigma.is_null()) report[name] = sigma;
   }
-  if (solve.check) report["check"] = json_of(*solve.check);
-  if (solve.error) report["error"] = json_of(*solve.error);
-  if (!solve.gates.empty()) report["gates"] = solve.gates;
-  if (!solve.registration.empty()) report["registration"] = solve.registration;
+  if (solve.check) report["check"] = object_of(*solve.check);
+  if (solve.error) report["error"] = object_of(*solve.error);
+  if (!solve.gates.empty()) report["gates"] = list_of(solve.gates);
+  if (!solve.registration.empty()) report["registration"] = list_of(solve.registration);
   if (!solve.sharpening.is_null()) report["sharpening"] = solve.sharpening;
   if (!solve.lateral_color.is_null()) report["lateral_color"] = solve.lateral_color;
   if (!solve.conditions.empty()) report["conditions"] = solve.conditions;

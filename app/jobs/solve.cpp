@@ -20,6 +20,7 @@
 #include "app/jobs/pictures.h"
 #include "app/jobs/reflectance.h"
 #include "app/jobs/report.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/product.h"
 #include "core/solve.h"
@@ -212,7 +213,6 @@ class Run {
     fullness_ = pipeline::fullness_of(photographs_);
     seconds_.read = watch_.lap();
 
-    facts_.registration = Json::array();
     if (is_half()) {
       Result<pipeline::Photographs> half = half_size(photographs_, context_.threads);
       if (!half) return std::move(half).error();
@@ -232,7 +232,7 @@ class Run {
     Result<pipeline::SessionShifts> found = register_shots(photographs_, context_);
     if (!found) return std::move(found).error();
     shifts_ = std::move(*found);
-    facts_.registration = json_of(shifts_, photographs_.leds);
+    facts_.registration = facts_of(shifts_, photographs_.leds);
     const std::vector<std::size_t> moved = shifts_.with(pipeline::ShiftVerdict::kLeftOut);
     for (std::size_t k = picked_.size(); k < photographs_.count(); ++k)
       picked_.push_back(static_cast<int>(k) + 1);
@@ -294,8 +294,8 @@ class Run {
   }
 
   void take_facts(const pipeline::FrameFacts& frame) {
-    facts_.solved_by = json_of(frame.tally);
-    if (frame.robust_share) facts_.solved_by["robust_share"] = *frame.robust_share;
+    facts_.solved_by = facts_of(frame.tally);
+    facts_.solved_by->robust_share = frame.robust_share;
     if (frame.deblur) facts_.sharpening = json_of(*frame.deblur);
     if (frame.lateral_corner_px) facts_.lateral_color = {{"corner_px", *frame.lateral_corner_px}};
     if (frame.gloss) {
@@ -303,7 +303,7 @@ class Run {
       facts_.reflectance = reflectance_summary(reflectance_);
     }
     if (frame.reference) {
-      facts_.gates = json_of(frame.reference->gates);
+      facts_.gates = facts_of(frame.reference->gates);
       facts_.reference = json_of(*frame.reference);
       for (std::string& said : warnings_of(*frame.reference)) warnings_.push_back(std::move(said));
     }
@@ -373,7 +373,7 @@ class Run {
       page["reflectance"] = reflectance_;
       page["gloss"] = reflectance_said(reflectance_);
     }
-    if (facts_.foretold) page["foretold"] = json_of(*facts_.foretold);
+    if (facts_.foretold) page["foretold"] = object_of(*facts_.foretold);
     if (Result<void> ok = write_report(partial_.path(), page); !ok) return ok;
     seconds_.report += watch_.lap();
     facts_.taken = {seconds_until_published(seconds_), expected.total_deg, expected.solved,

@@ -15,6 +15,7 @@
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/rig_lock.h"
 #include "core/calibration.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/process.h"
 
@@ -25,7 +26,7 @@ constexpr const char* kScan = "scan";  // who asks for a preview
 
 // A job without what it made and where it waits, which is asked for by its id.
 Json event_of(const JobStatus& job) {
-  Json event = json_of(job);
+  Json event = object_of(job);
   event.erase("result");
   event.erase("place");
   event.erase("notes");

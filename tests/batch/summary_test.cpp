@@ -7,6 +7,8 @@
 #include <map>
 #include <string>
 
+#include "core/field_json.h"
+
 #include "tests/batch/sample_plan.h"
 
 namespace weft::batch {
@@ -57,7 +59,7 @@ TEST(Summary, CountsWhatIsSolvedFailedAndMissing) {
   EXPECT_EQ(summary.causes[0].what, "raw is damaged");
   EXPECT_EQ(summary.causes[0].sessions, 2);
   EXPECT_THAT(summary.causes[0].example, testing::HasSubstr("cloth-2"));
-  EXPECT_EQ(json_of(summary, rows)["sessions"].size(), 6U);
+  EXPECT_EQ(object_of(SummaryDocument{summary, rows})["sessions"].size(), 6U);
 }
 
 TEST(Summary, NamesWhatIsHardlySolvedAndWeighsErrorsByTheClothThatTheyHoldFor) {
@@ -78,7 +80,7 @@ TEST(Summary, NamesWhatIsHardlySolvedAndWeighsErrorsByTheClothThatTheyHoldFor) {
   EXPECT_DOUBLE_EQ(summary.error.solved(), 2.1 / 3);
   EXPECT_DOUBLE_EQ(summary.error.degrees(), (2 * 0.8 + 0.1 * 0.25) / 2.1);
   EXPECT_DOUBLE_EQ(summary.seconds_ratio(), summary.predicted_seconds / 240);
-  const Json json = json_of(summary, rows);
+  const Json json = object_of(SummaryDocument{summary, rows});
   EXPECT_EQ(json["barely_solved"], Json({plan.jobs[1].session}));
   EXPECT_EQ(json["seconds_ratio"], summary.seconds_ratio());
   EXPECT_EQ(json["sessions"][1]["solved"], 0.1);

@@ -153,6 +153,87 @@ TEST(Describe, SaysItsSchema) {
   EXPECT_EQ(schema["properties"]["yarns"]["items"], schema_of<Yarn>());
 }
 
+// What documents have besides what people say.
+struct Plate {
+  Vec3 centre_mm = {1, 2, 3};
+  std::array<std::array<double, 2>, 3> curves = {};
+  std::vector<std::array<double, 2>> corners_px = {};
+  std::uint64_t bytes = 5'000'000'000;
+  std::optional<double> left_s;
+  std::optional<Yarn> thread;
+  Json rest;
+  bool is_dyed = false;
+  int colours = 3;
+};
+
+void describe(Fields& fields, Plate& p) {
+  fields.value({"centre_mm", "Where it lies", {-10, 10}, kMustSay}, p.centre_mm);
+  fields.value({"curves", "Three of two"}, p.curves);
+  fields.value({"corners_px", "Pairs", {}, kUnlessEmpty}, p.corners_px);
+  fields.value({"bytes", "Of memory", {}, kMustSay}, p.bytes);
+  fields.value({"left_s", "Until its end", {}, kOrNull}, p.left_s);
+  fields.object({"thread", "That it hangs on", {}, kOrNull}, p.thread);
+  fields.value({"rest", "Whatever it is", {}, kUnlessEmpty}, p.rest);
+  fields.value({"is_dyed", "With colour"}, p.is_dyed);
+  fields.only_if(p.is_dyed, [&] { fields.value({"colours", "How many", {1, 9}, kMustSay}, p.colours); });
+}
+
+TEST(Describe, WritesAndReadsNumbersInTheirShapeCountsAndNothing) {
+  const Json written = object_of(Plate());
+  EXPECT_EQ(written.dump(), R"({"centre_mm":[1.0,2.0,3.0],"curves":[[0.0,0.0],[0.0,0.0],[0.0,0.0]],)"
+                            R"("bytes":5000000000,"left_s":null,"thread":null,"is_dyed":false})");
+  const Result<Plate> read = read_fields<Plate>(written, "plate.json");
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_EQ(object_of(*read), written);
+  EXPECT_FALSE(read->left_s || read->thread);
+  Plate dyed;
+  dyed.is_dyed = true;
+  dyed.corners_px = {{1, 2}, {3, 4}};
+  EXPECT_EQ(object_of(dyed)["colours"], 3);
+  EXPECT_EQ(object_of(dyed)["corners_px"], Json::parse("[[1.0, 2.0], [3.0, 4.0]]"));
+}
+
+TEST(Describe, RefusesNumbersThatAreNotInTheirShape) {
+  const Json good = object_of(Plate());
+  for (const auto& [path, value, said] :
+       {std::tuple<const char*, Json, const char*>{"/centre_mm", {1, 2}, "\"centre_mm\" must be 3 numbers"},
+        {"/centre_mm/1", "2", "\"centre_mm\" must be 3 numbers"},
+        {"/centre_mm/1", 11, "\"centre_mm\" must be a number from -10 to 10"},
+        {"/curves/2", {1, 2, 3}, "\"curves\" must be 3 lists of 2 numbers"},
+        {"/corners_px", {{1, 2}, {3}}, "\"corners_px\" must be lists of 2 numbers"},
+        {"/bytes", -1, "\"bytes\" must be a whole number from 0"},
+        {"/bytes", 0.5, "\"bytes\" must be a whole number from 0"},
+        {"/left_s", "soon", "\"left_s\" is \"soon\"; a number was expected"},
+        {"/is_dyed", true, "\"colours\" is missing"}}) {
+    Json json = good;
+    json[Json::json_pointer(path)] = value;
+    const Result<Plate> read = read_fields<Plate>(json, "plate.json");
+    ASSERT_FALSE(read) << path << " " << value;
+    EXPECT_THAT(read.error().message(), HasSubstr(said));
+  }
+}
+
+TEST(Describe, SaysWhatAReaderTakesAndWhatAWriterMakes) {
+  const Json taken = schema_of<Plate>(), made = schema_of<Plate>(SchemaOf::kWritten);
+  EXPECT_EQ(taken["required"], Json::parse(R"(["centre_mm", "bytes"])"));
+  EXPECT_EQ(made["required"],
+            Json::parse(R"(["centre_mm", "curves", "bytes", "left_s", "thread", "is_dyed"])"));
+  EXPECT_EQ(taken["properties"]["left_s"]["type"], Json::parse(R"(["number", "null"])"));
+  EXPECT_EQ(taken["properties"]["curves"]["items"]["maxItems"], 2);
+  EXPECT_EQ(taken["properties"]["curves"]["maxItems"], 3);
+  EXPECT_FALSE(taken["properties"]["corners_px"].contains("maxItems"));
+  EXPECT_EQ(taken["properties"]["bytes"]["type"], "integer");
+}
+
+TEST(Describe, CountsFromOneWherePeopleDo) {
+  const auto of = [](Naming naming) {
+    const Json cloth = Json::parse(R"({"name": "a", "yarns": [{}, {"width_mm": 11}]})");
+    return read_fields<Cloth>(cloth, "cloth.json", naming).error().where;
+  };
+  EXPECT_EQ(of(Naming::kOfPrograms), "cloth.json: yarn 1");
+  EXPECT_EQ(of(Naming::kFromOne), "cloth.json: yarn 2");
+}
+
 TEST(Describe, NamesAnOptionWithoutItsUnit) {
   EXPECT_EQ(option_of({"tape_sigma_mm"}), "--tape-sigma");
   EXPECT_EQ(option_of({"accept_misfit"}), "--accept-misfit");

@@ -31,7 +31,7 @@ SolveFacts some_facts() {
   facts.check = LeftOutFacts{{0.02, 0.03, 0.01, 0.015, 90}, {{4, {0.04, 0.06, {}, {}, 12}}}};
   facts.error = SolveError{0.5, 0.25, 1.5, 8};
   facts.input = {{"session", "twill"}};
-  facts.gates = {{{"name", "slope"}}};
+  facts.gates = {{.name = "slope", .unit = "degrees", .value = 3, .limit = 2, .is_over = true}};
   return facts;
 }
 
@@ -67,7 +67,7 @@ TEST(SolveFacts, LeaveOutWhatThereIsNot) {
   facts.error.reset();
   const Json json = json_of(facts);
   EXPECT_TRUE(json.contains("gates") && json.contains("input")) << json;
-  for (const char* field : {"error", "reference", "solved_by", "conditions", "registration"})
+  for (const char* field : {"error", "reference", "solved_by", "conditions"})
     EXPECT_FALSE(json.contains(field)) << field;
 }
 
@@ -87,13 +87,13 @@ TEST(SolveFacts, WithAFieldOfTheWrongKindAreRefusedByItsName) {
   for (const auto& [path, value, said] : {std::tuple<const char*, Json, const char*>{"/id", 3, "\"id\""},
                                           {"/width", "wide", "\"width\""},
                                           {"/check/rms", "small", "check: \"rms\""},
-                                          {"/check/lights/0/light", 0.5, "check: lights: \"light\""},
+                                          {"/check/lights/0/light", 0.5, "check: light 0: \"light\""},
                                           {"/status/DARK", 0.5, "status: \"DARK\""},
                                           {"/compression", "rar", "none, zip or piz was expected"},
                                           {"/albedo_scale", "big", "relative or absolute was expected"},
-                                          {"/color", "sepia", "\"camera\" or \"rec709\""},
-                                          {"/warnings/1/text", Json(), "warnings: \"text\""},
-                                          {"/pictures/0", 7, "\"pictures\" must be names of files"},
+                                          {"/color", "sepia", "camera or rec709 was expected"},
+                                          {"/warnings/1/text", Json(), "warning 1: \"text\""},
+                                          {"/pictures/0", 7, "\"pictures\" is 7; a text was expected"},
                                           {"/error/max_deg", "8", "error: \"max_deg\""}}) {
     Json json = good;
     json[Json::json_pointer(path)] = value;

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/field_json.h"
+
 namespace weft {
 namespace {
 
@@ -16,13 +18,13 @@ TEST(Verdict, AsJsonHasItsThreeFields) {
 TEST(Verdict, IsReadAsItWasWritten) {
   const std::vector<Verdict> written = {{"LED_DEAD", "LED 3 looks dead", "check it"},
                                         {"CONDITIONS", "a frame was left out", ""}};
-  const Result<std::vector<Verdict>> read = verdicts_from_json(json_of(written), "solve.json");
+  const Result<std::vector<Verdict>> read = read_list<Verdict>(json_of(written), "solve.json");
   ASSERT_TRUE(read) << read.error().message();
   EXPECT_EQ(*read, written);
 }
 
 TEST(Verdict, WithoutATextIsRefusedByTheNameOfItsFile) {
-  const auto read = verdicts_from_json(Json::parse(R"([{"name": "LED_DEAD"}])"), "solve.json: warnings");
+  const auto read = read_list<Verdict>(Json::parse(R"([{"name": "LED_DEAD"}])"), "solve.json: warnings");
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().kind, ErrorKind::kBadData);
   EXPECT_THAT(read.error().message(), testing::HasSubstr("solve.json: warnings: \"text\" is missing"));

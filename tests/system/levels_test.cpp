@@ -63,8 +63,8 @@ TEST_F(Levels, ReferenceRunsNoStageOnAFlatCardAndSaysWhy) {
   EXPECT_TRUE(report.facts.reference["stages"].empty());
   EXPECT_TRUE(report.facts.reference["rounds"].empty());
   ASSERT_EQ(report.facts.gates.size(), 4U);
-  for (const Json& gate : report.facts.gates) EXPECT_EQ(gate["verdict"], "under") << gate;
-  EXPECT_EQ(report.facts.solved_by["float32"], kSize.pixels());
+  for (const GateFacts& gate : report.facts.gates) EXPECT_FALSE(gate.is_over) << gate.name << gate.value;
+  EXPECT_EQ(report.facts.solved_by->float32, kSize.pixels());
 }
 
 TEST_F(Levels, PreviewIsHalfTheSizeAndRightOnACard) {
@@ -78,12 +78,10 @@ TEST_F(Levels, PreviewIsHalfTheSizeAndRightOnACard) {
 
 TEST_F(Levels, StandardCountsHowItsPixelsWereSolved) {
   simulate(scene_named("twill", kSize), session_);
-  const Json solved = solve("standard").facts.solved_by;
-  EXPECT_EQ(solved["float32"].get<std::int64_t>() + solved["double"].get<std::int64_t>() +
-                solved["qr"].get<std::int64_t>() + solved["svd"].get<std::int64_t>() +
-                solved["unsolved"].get<std::int64_t>(),
-            kSize.pixels())
-      << solved;
+  const std::optional<SolvedBy> solved = solve("standard").facts.solved_by;
+  ASSERT_TRUE(solved);
+  EXPECT_EQ(solved->float32 + solved->in_double + solved->qr + solved->svd + solved->unsolved,
+            kSize.pixels());
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include "app/jobs/facts_json.h"
 #include "app/jobs/session_input.h"
+#include "core/field_json.h"
 #include "core/vec.h"
 #include "pipeline/bands.h"
 #include "solver/method.h"
@@ -78,7 +79,7 @@ TEST_F(Registration, OfOneShotThatMovedTakesMostOfItsCostAway) {
   const double moved_deg = mean_error_deg(session);
   const pipeline::SessionShifts shifts = *pipeline::register_shots(session, {});
   const std::vector<std::size_t> left_out = shifts.with(pipeline::ShiftVerdict::kLeftOut);
-  ASSERT_EQ(left_out, std::vector<std::size_t>{4}) << app::json_of(shifts, {}).dump(1);
+  ASSERT_EQ(left_out, std::vector<std::size_t>{4}) << list_of(app::facts_of(shifts, {})).dump(1);
   ASSERT_TRUE(pipeline::leave_out(left_out, session));
   const double registered_deg = mean_error_deg(session);
   EXPECT_LT(registered_deg - unmoved_deg, 0.3 * (moved_deg - unmoved_deg))
@@ -88,7 +89,8 @@ TEST_F(Registration, OfOneShotThatMovedTakesMostOfItsCostAway) {
 TEST_F(Registration, OfASessionWithoutMovementChangesNothing) {
   const pipeline::Photographs session = photographs_of(still_, "still.weft");
   const pipeline::SessionShifts shifts = *pipeline::register_shots(session, {});
-  EXPECT_EQ(shifts.with(pipeline::ShiftVerdict::kStill).size(), 10U) << app::json_of(shifts, {}).dump(1);
+  EXPECT_EQ(shifts.with(pipeline::ShiftVerdict::kStill).size(), 10U)
+      << list_of(app::facts_of(shifts, {})).dump(1);
 }
 
 TEST_F(Registration, TakesNoGlossForMovement) {
@@ -100,7 +102,8 @@ TEST_F(Registration, TakesNoGlossForMovement) {
     const pipeline::Photographs session =
         photographs_of(satin, family == simulator::Family::kSmooth ? "smooth.weft" : "plain.weft");
     const pipeline::SessionShifts shifts = *pipeline::register_shots(session, {});
-    EXPECT_EQ(shifts.with(pipeline::ShiftVerdict::kStill).size(), 10U) << app::json_of(shifts, {}).dump(1);
+    EXPECT_EQ(shifts.with(pipeline::ShiftVerdict::kStill).size(), 10U)
+        << list_of(app::facts_of(shifts, {})).dump(1);
     double farthest_px = 0;
     for (const pipeline::ShotShift& shot : shifts.shots)
       farthest_px = std::max(farthest_px, std::abs(shot.measured.shift.dx_px));

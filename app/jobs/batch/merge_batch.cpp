@@ -9,6 +9,7 @@
 #include "app/jobs/batch/abandoned.h"
 #include "app/jobs/batch/batch_page.h"
 #include "app/jobs/batch/change_pictures.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/solve.h"
 #include "core/solve_record.h"
@@ -113,7 +114,7 @@ Result<MergeReport> merge_batch(const fs::path& plan, const JobContext& context)
   if (Result<void> ok = write_pictures(*state, report.folder, drawn, context); !ok)
     return std::move(ok).error();
   Json document = {{"schema", kReportSchema}, {"plan", state->plan.header.id}};
-  document.update(batch::json_of(state->summary, state->rows));
+  document.update(object_of(batch::SummaryDocument{state->summary, state->rows}));
   Json left_out = Json::array(), pictures = Json::array();
   for (const batch::LeftOut& left : state->plan.left_out)
     left_out.push_back({{"session", left.session},

@@ -451,7 +451,7 @@ void describe(Fields& fields, RunBatchRequest& r) {
   RunBatchOptions& o = r.options;
   fields.value({.name = "plan",
                 .says = "Plan of weft batch plan",
-                .need = Need::kMustSay,
+                .need = kMustSay,
                 .option = "",
                 .said = Said::kAtThisMachine},
                o.plan);

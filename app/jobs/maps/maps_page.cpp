@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/jobs/maps/session_sets.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/text.h"
 #include "core/verdict.h"
@@ -109,7 +110,7 @@ Result<std::string> pictures_of(const fs::path& folder, const Json& document) {
 }  // namespace
 
 Result<void> write_maps_page(const fs::path& folder, const Json& document) {
-  const Result<std::vector<Verdict>> verdicts = verdicts_from_json(document["verdicts"], "maps.json");
+  const Result<std::vector<Verdict>> verdicts = read_list<Verdict>(document["verdicts"], "maps.json");
   if (!verdicts) return verdicts.error();
   const Result<std::string> pictures = pictures_of(folder, document);
   if (!pictures) return pictures.error();

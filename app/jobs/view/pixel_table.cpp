@@ -79,10 +79,10 @@ Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path
   table->photographs_ = std::move(loaded->photographs);
   table->whole_shots_ = json_of(loaded->conditions).value("left_out", Json::array());
   std::vector<std::size_t> moved;
-  for (const Json& shot : solve.registration.is_array() ? solve.registration : Json::array()) {
+  for (const RegisteredShot& shot : solve.registration) {
     const std::vector<int>& leds = table->photographs_.leds;
-    const auto led = std::ranges::find(leds, shot.value("led", 0));
-    if (!shot.value("corrected", false) || led == leds.end()) continue;
+    const auto led = std::ranges::find(leds, shot.led);
+    if (!shot.is_corrected || led == leds.end()) continue;
     moved.push_back(static_cast<std::size_t>(led - leds.begin()));
     table->whole_shots_.push_back({{"led", *led}, {"why", "moved"}});
   }

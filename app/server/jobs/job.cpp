@@ -5,22 +5,23 @@
 #include <cstddef>
 #include <utility>
 
+#include "core/field_json.h"
+
 namespace weft::app {
 namespace {
 
 constexpr std::array<const char*, 5> kStates = {"queued", "running", "done", "failed", "cancelled"};
 
-Result<std::vector<std::string>> texts_of(JsonFields& fields, const char* key) {
-  std::vector<std::string> texts;
-  for (const Json& text : fields.list(key)) {
-    if (!text.is_string()) {
-      fields.reject(key, "must be a list of texts");
-      break;
-    }
-    texts.push_back(text.get<std::string>());
-  }
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  return texts;
+/// What lies on the disk.
+struct JobDocument {
+  JobStatus job;
+};
+
+void describe(Fields& fields, JobDocument& d) {
+  describe(fields, d.job);
+  fields.value({"arguments", "Of weft", {}, kMustSay}, d.job.spec.arguments);
+  fields.value({"request_id", "The same again is the same job"}, d.job.spec.request_id);
+  fields.value({"needs", "Files and folders that must be there when it begins"}, d.job.spec.needs);
 }
 
 }  // namespace
@@ -29,67 +30,51 @@ const char* name_of(JobState state) {
   return kStates[static_cast<std::size_t>(state)];
 }
 
-Json json_of(const JobStatus& job) {
-  return {{"id", job.id},
-          {"kind", job.spec.kind},
-          {"of", job.spec.of},
-          {"wants", job.spec.wants},
-          {"by", job.spec.by},
-          {"state", name_of(job.state)},
-          {"held", job.is_held},
-          {"place", job.place ? Json(*job.place) : Json()},
-          {"phase", job.phase},
-          {"share", job.share},
-          {"left_s", job.left_s ? Json(*job.left_s) : Json()},
-          {"asked", job.asked},
-          {"began", job.began},
-          {"ended", job.ended},
-          {"seconds", job.seconds},
-          {"exit_code", job.exit_code ? Json(*job.exit_code) : Json()},
-          {"notes", job.notes},
-          {"error", job.error},
-          {"result", job.result}};
+void describe(Fields& fields, JobStatus& j) {
+  fields.value({"id", "In the order they were asked for", {}, kMustSay}, j.id);
+  fields.value({"kind", "What it does", {}, kMustSay}, j.spec.kind);
+  fields.value({"of", "The session; of batch_plan and batch_run the batch", {}, kMustSay}, j.spec.of);
+  fields.value({"wants", "What was asked of it beside its kind: quality, session, ..."}, j.spec.wants);
+  fields.value({"by", "Who asked for it", {}, kMustSay}, j.spec.by);
+  fields.choice({"state", "How it is", {}, kMustSay}, j.state, kStates);
+  fields.value({"held", "It stands still until the scan has ended"}, j.is_held);
+  fields.value({"place", "Among those that wait, from 1; null: it does not wait", {}, kOrNull}, j.place);
+  fields.value({"phase", "Of a running one, as its verb calls it"}, j.phase);
+  fields.value({"share", "Of the phase, 0 to 1"}, j.share);
+  fields.value(
+      {"left_s",
+       "Until its end: of a solve by the newest price of its session, of a batch_run by its plan and "
+       "then by its pace, else by how long the last job took that differs in nothing but what it "
+       "worked on; null where neither is known, and where it takes longer",
+       {},
+       kOrNull},
+      j.left_s);
+  fields.value({"asked", "ISO 8601", {}, kMustSay}, j.asked);
+  fields.value({"began", "Empty: not yet", {}, kMustSay}, j.began);
+  fields.value({"ended", "Empty: not yet", {}, kMustSay}, j.ended);
+  fields.value({"seconds", "That it ran, without those that it was held for", {}, kMustSay}, j.seconds);
+  fields.value({"exit_code", "Of its verb", {}, kOrNull}, j.exit_code);
+  fields.value({"notes", "What it said to people", {}, kMustSay}, j.notes);
+  fields.value({"error", "Why it failed", {}, kOrNull}, j.error);
+  fields.value({"result", "What its verb prints with --json", {}, kOrNull}, j.result);
 }
 
 Json document_of(const JobStatus& job) {
   Json document = {{"schema", "weft.job/1"}};
-  document.update(json_of(job));
-  document["arguments"] = job.spec.arguments;
-  document["request_id"] = job.spec.request_id;
-  document["needs"] = job.spec.needs;
+  write_fields(document, JobDocument{job});
   return document;
 }
 
 Result<JobStatus> job_from_json(const Json& document, const std::string& where) {
-  JsonFields fields(document, where);
-  JobStatus job;
-  job.id = fields.text("id");
-  job.spec.kind = fields.text("kind");
-  job.spec.of = fields.text("of");
-  job.spec.by = fields.text("by");
-  job.spec.request_id = fields.text_or("request_id", "");
-  job.state = fields.one_of<JobState>("state", kStates);
-  job.asked = fields.text("asked");
-  job.began = fields.text("began");
-  job.ended = fields.text("ended");
-  job.seconds = fields.number("seconds");
-  Result<std::vector<std::string>> arguments = texts_of(fields, "arguments"),
-                                   notes = texts_of(fields, "notes");
-  if (!arguments) return std::move(arguments).error();
-  if (!notes) return std::move(notes).error();
-  job.spec.arguments = std::move(*arguments);
-  job.notes = std::move(*notes);
-  if (document.contains("needs")) {
-    Result<std::vector<std::string>> needs = texts_of(fields, "needs");
-    if (!needs) return std::move(needs).error();
-    job.spec.needs = std::move(*needs);
-  }
-  job.spec.wants = document.value("wants", Json::object());
-  if (const Json code = document.value("exit_code", Json()); code.is_number_integer())
-    job.exit_code = code.get<int>();
-  job.error = document.value("error", Json());
-  job.result = document.value("result", Json());
-  return job;
+  Result<JobDocument> read = read_fields<JobDocument>(document, where);
+  if (!read) return std::move(read).error();
+  JobStatus& job = read->job;
+  job.is_held = false;
+  job.place.reset();
+  job.left_s.reset();
+  job.phase.clear();
+  job.share = 0;
+  return std::move(job);
 }
 
 }  // namespace weft::app

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
+#include "core/fields.h"
 #include "core/result.h"
 
 namespace weft::app {
@@ -50,11 +50,10 @@ struct JobStatus {
   Json result;                     ///< the document that its verb prints with --json; null until it is done
 };
 
-/// {"id", "kind", "of", "wants", "by", "state", "held", "place", "phase", "share", "left_s", "asked",
-/// "began", "ended", "seconds", "exit_code", "notes", "error", "result"}.
-Json json_of(const JobStatus& job);
+/// As a client sees it.
+void describe(Fields& fields, JobStatus& job);
 
-/// A job as it lies on the disk (weft.job/1): json_of() with "arguments", "request_id" and "needs". kBadData.
+/// A job as it lies on the disk (weft.job/1): with "arguments", "request_id" and "needs". kBadData.
 Json document_of(const JobStatus& job);
 Result<JobStatus> job_from_json(const Json& document, const std::string& where);
 
