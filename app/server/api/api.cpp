@@ -6,7 +6,9 @@
 
 #include "app/server/api/descriptions.h"
 #include "app/server/api/job_kinds.h"
+#include "app/server/api/reply_schemas.h"
 #include "app/server/api/scan_body.h"
+#include "app/server/api/short_schema.h"
 #include "core/files.h"
 
 namespace weft::app {
@@ -26,6 +28,11 @@ void write_out(Json& body) {
   body["content"] = std::move(content);
 }
 
+void write_out_response(Json& response) {
+  if (response.is_string()) response = {{"description", response}, {"content", content_of("ErrorDocument")}};
+  write_out(response);
+}
+
 /// The files of the resources say shortly what calls have alike: a parameter that several have is named (of
 /// openapi.json), an error is a sentence, and how every call may be refused before it is looked at stands
 /// here.
@@ -36,11 +43,7 @@ void write_out_operation(Json& operation, const Json& parameters) {
     }
   }
   Json& responses = operation["responses"];
-  for (auto& [code, response] : responses.items()) {
-    if (response.is_string())
-      response = {{"description", response}, {"content", content_of("ErrorDocument")}};
-    write_out(response);
-  }
+  for (auto& [code, response] : responses.items()) write_out_response(response);
   const auto refused = [&](const char* code, const char* response) {
     responses[code] = {{"$ref", std::string("#/components/responses/") + response}};
   };
@@ -52,6 +55,22 @@ void write_out_operation(Json& operation, const Json& parameters) {
     operation["requestBody"]["required"] = true;
     write_out(operation["requestBody"]);
   }
+}
+
+/// JSON Schema of 2020 as OpenAPI 3.0 says it.
+Json in_openapi(Json schema) {
+  if (!schema.is_structured()) return schema;
+  for (Json& each : schema) each = in_openapi(std::move(each));
+  if (!schema.is_object()) return schema;
+  if (schema.contains("type") && schema["type"].is_array()) {
+    schema["type"] = Json(schema["type"][0]);
+    schema["nullable"] = true;
+  }
+  if (schema.contains("exclusiveMinimum") && schema["exclusiveMinimum"].is_number()) {
+    schema["minimum"] = schema["exclusiveMinimum"];
+    schema["exclusiveMinimum"] = true;
+  }
+  return schema;
 }
 
 /// Whether a call asks something of board or camera.
@@ -91,7 +110,10 @@ Json api_description() {
     paths.update(part["paths"]);
     schemas.update(part["schemas"]);
   }
-  schemas.update(job_schemas());
+  for (Json& schema : schemas) schema = written_out(schema);
+  schemas.update(in_openapi(reply_schemas()));
+  schemas.update(in_openapi(job_schemas()));
+  for (auto& [name, response] : whole["components"]["responses"].items()) write_out_response(response);
   for (auto& [path, item] : paths.items()) {
     for (auto& [method, operation] : item.items()) write_out_operation(operation, parameters);
   }

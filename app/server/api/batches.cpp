@@ -15,6 +15,7 @@
 #include "app/server/api/batch_place.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/viewed.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "library/session_name.h"
 
@@ -212,7 +213,7 @@ Json changes_of(const BatchState& state, const fs::path& report) {
     changes.push_back({{"session", name_of_session(row.job->session)},
                        {"solve", row.result->solve},
                        {"before", row.job->before},
-                       {"change", batch::json_of(*row.result->change)},
+                       {"change", object_of(*row.result->change)},
                        {"regressions", batch::regressions(*row.result->change)},
                        {"picture", picture == pictures.end() ? Json() : Json(picture->second)}});
   }
@@ -233,7 +234,7 @@ Result<Reply> report_of(const RigParts& parts, const Call& call) {
   const Result<BatchState> state = state_of(parts, name);
   if (!state) return state.error();
   const fs::path report = report_of_batch(batches_of(parts), name);
-  Json document = batch::json_of(state->summary, state->rows);
+  Json document = object_of(batch::SummaryDocument{state->summary, state->rows});
   for (const char* all : {"sessions", "missing_tasks"}) document.erase(all);
   document["changed"] = state->summary.changed.size();
   document["changes"] = changes_of(*state, report);

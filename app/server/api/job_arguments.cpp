@@ -170,7 +170,7 @@ bool JobArguments::begin(const Field& field) {
     known_.emplace_back(kSet);
     if (body_.contains(field.name)) exclude(kSet, field.name);
   }
-  if (!is_said(field.name) && field.need == Need::kMustSay) miss(field.name, "");
+  if (!is_said(field.name) && field.need == kMustSay) miss(field.name, "");
   return is_said(field.name) && !error_;
 }
 
@@ -297,7 +297,7 @@ void JobSchema::take(const Field& field, Value value) {
     if (is_list) property = {{"oneOf", {property, {{"type", "array"}, {"items", property}}}}};
     Field told = field;
     told.says += says;
-    if (field.path == PathTo::kSessionOrSet) told.need = Need::kMaySay;
+    if (field.path == PathTo::kSessionOrSet) told.need = kMaySay;
     add(told, std::move(property));
   };
   switch (field.path) {
@@ -308,7 +308,7 @@ void JobSchema::take(const Field& field, Value value) {
                          .says = "In its place a set of photographs: folder below the rig file's"};
       named("session", ": its name");
       add(set, {{"type", "string"}, {"x-names", "folder"}});
-      if (field.need == Need::kMustSay) JsonSchema::need_one({field.name, kSet});
+      if (field.need == kMustSay) JsonSchema::need_one({field.name, kSet});
       return JsonSchema::exclude(field.name, kSet);
     }
     case PathTo::kNamed:

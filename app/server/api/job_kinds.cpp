@@ -89,7 +89,7 @@ struct NamedMaterial {
 void describe(Fields& fields, NamedMaterial& source) {
   fields.value({.name = "material",
                 .says = "As GET materials has its key",
-                .need = Need::kMustSay,
+                .need = kMustSay,
                 .said = Said::kToServer,
                 .is_sentence = true},
                source.material);
@@ -143,7 +143,7 @@ struct BatchName {
 void describe(Fields& fields, BatchName& b) {
   fields.value({.name = "batch",
                 .says = "As GET batches names it",
-                .need = Need::kMustSay,
+                .need = kMustSay,
                 .said = Said::kToServer,
                 .is_sentence = true},
                b.batch);

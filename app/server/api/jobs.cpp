@@ -75,7 +75,7 @@ Result<Reply> add_job(const RigParts& parts, const Call& call) {
   const bool has_begun = spec->kind == "batch_plan" && (!job || job->spec.of != spec->of);
   if (has_begun) remove_batch(parts.state / kBatchFolder, spec->of);
   if (!job) return job.error();
-  return json_reply(json_of(*job), kAccepted);
+  return json_reply(object_of(*job), kAccepted);
 }
 
 Result<int> number_of(const Call& call, const char* key, int otherwise) {
@@ -89,7 +89,7 @@ Result<int> number_of(const Call& call, const char* key, int otherwise) {
 
 // What a plan leaves out may be ten thousand sessions, and is asked for with the batch.
 Json job_as_told(const JobStatus& job) {
-  Json json = json_of(job);
+  Json json = object_of(job);
   if (job.spec.kind == "batch_plan" && job.result.is_object()) json["result"].erase("left_out");
   return json;
 }
@@ -117,7 +117,7 @@ Result<Reply> one_job(const RigParts& parts, const Call& call) {
 Result<Reply> forget_job(const RigParts& parts, const Call& call) {
   const Result<JobStatus> job = parts.jobs.forget(call.segments.at(0));
   if (!job) return job.error();
-  return json_reply(json_of(*job));
+  return json_reply(object_of(*job));
 }
 
 Result<Reply> log_of_job(const RigParts& parts, const Call& call) {
@@ -154,7 +154,7 @@ Route step_route(const RigParts& parts, const char* path, JobStep step) {
             if (const Result<Json> body = parse_body(call.body); !body) return body.error();
             const Result<JobStatus> job = (parts.jobs.*step)(call.segments.at(0));
             if (!job) return job.error();
-            return json_reply(json_of(*job), kAccepted);
+            return json_reply(object_of(*job), kAccepted);
           }};
 }
 

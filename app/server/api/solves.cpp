@@ -6,6 +6,7 @@
 #include "app/jobs/compare.h"
 #include "app/server/api/api.h"
 #include "app/server/api/viewed.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/solve.h"
 #include "library/current.h"
@@ -65,7 +66,7 @@ Result<Reply> report_of_solve(const RigParts& parts, const Call& call) {
   Result<Json> report = read_json(viewed->folder / "report.json", "weft.solve-report", 1);
   if (!report) return std::move(report).error();
   (*report)["reference"] = viewed->solve->reference;
-  (*report)["solved_by"] = viewed->solve->solved_by;
+  (*report)["solved_by"] = viewed->solve->solved_by ? object_of(*viewed->solve->solved_by) : Json();
   return json_reply(*report);
 }
 

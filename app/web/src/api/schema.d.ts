@@ -5594,22 +5594,6 @@ export interface components {
         ErrorDocument: {
             error: components["schemas"]["Error"];
         };
-        Error: {
-            /** @enum {string} */
-            kind: "usage" | "bad_data" | "no_input" | "no_device" | "internal" | "cannot_create" | "input_output" | "try_again" | "protocol" | "interrupted";
-            /**
-             * @description What this server decided, by a word that stays; absent where another part of weft failed
-             * @enum {string}
-             */
-            code?: "beyond_file" | "bug" | "changed_meanwhile" | "controls_held" | "devices_closed" | "disk_silent" | "foreign_host" | "foreign_page" | "job_ended" | "job_not_ended" | "job_not_waiting" | "may_only_look" | "no_fabric" | "no_millimetres" | "no_origin" | "no_rig" | "no_scan" | "no_set" | "no_such_call" | "no_such_frame" | "no_such_batch" | "batch_exists" | "no_such_job" | "no_such_maps" | "no_such_session" | "no_such_set" | "no_such_shot" | "no_such_solve" | "no_such_tile" | "not_json" | "not_logged_in" | "nothing_to_undo" | "readings_gone" | "rig_busy" | "rig_is_real" | "rig_moved" | "scan_ending" | "session_busy" | "session_exists" | "set_complete" | "shot_on_its_way" | "too_busy" | "too_many_streams" | "unreadable" | "wrong_method" | "wrong_token";
-            /** @description What happened */
-            what: string;
-            /** @description File, field or device */
-            where: string;
-            why: string;
-            /** @description What to do */
-            remedy: string;
-        };
         Batches: {
             batches: components["schemas"]["Batch"][];
         };
@@ -6076,37 +6060,6 @@ export interface components {
             is_aside: boolean;
             /** @description The stage before it has taken its photographs */
             is_photographed: boolean;
-        };
-        Job: {
-            id: string;
-            kind: string;
-            /** @description The session; of batch_plan and batch_run the batch */
-            of: string;
-            by: string;
-            /** @enum {string} */
-            state: "queued" | "running" | "done" | "failed" | "cancelled";
-            /** @description It stands still until the scan has ended */
-            held: boolean;
-            /** @description What was asked of it beside its kind: quality, session, ... */
-            wants: Record<string, unknown>;
-            /** @description Among those that wait, from 1; null: it does not wait */
-            place: number | null;
-            phase: string;
-            /** @description Of the phase, 0 to 1 */
-            share: number;
-            /** @description Until its end: of a solve by the newest price of its session, of a batch_run by its plan and then by its pace, else by how long the last job took that differs in nothing but what it worked on; null where neither is known, and where it takes longer */
-            left_s: number | null;
-            /** @description ISO 8601 */
-            asked: string;
-            /** @description Empty: not yet */
-            began: string;
-            ended: string;
-            seconds: number;
-            exit_code: number | null;
-            notes: string[];
-            error: Record<string, unknown> | null;
-            /** @description What its verb prints with --json */
-            result: Record<string, unknown> | null;
         };
         Jobs: {
             /** @description Newest first */
@@ -6711,6 +6664,69 @@ export interface components {
                 /** @description As it may be said */
                 example: string;
             }[];
+        };
+        Error: {
+            /**
+             * @description For programs
+             * @enum {string}
+             */
+            kind: "usage" | "bad_data" | "no_input" | "no_device" | "internal" | "cannot_create" | "input_output" | "try_again" | "protocol" | "interrupted";
+            /** @description What happened */
+            what: string;
+            /** @description File, key or device */
+            where: string;
+            /** @description With its numbers */
+            why: string;
+            /** @description What to do */
+            remedy: string;
+            /**
+             * @description What this server decided, by a word that stays; absent where another part of weft failed
+             * @enum {string}
+             */
+            code?: "batch_exists" | "beyond_file" | "bug" | "changed_meanwhile" | "controls_held" | "devices_closed" | "disk_silent" | "foreign_host" | "foreign_page" | "job_ended" | "job_not_ended" | "job_not_waiting" | "may_only_look" | "no_fabric" | "no_millimetres" | "no_origin" | "no_rig" | "no_scan" | "no_set" | "no_such_batch" | "no_such_call" | "no_such_frame" | "no_such_job" | "no_such_maps" | "no_such_session" | "no_such_set" | "no_such_shot" | "no_such_solve" | "no_such_tile" | "not_json" | "not_logged_in" | "nothing_to_undo" | "readings_gone" | "rig_busy" | "rig_is_real" | "rig_moved" | "scan_ending" | "session_busy" | "session_exists" | "set_complete" | "shot_on_its_way" | "too_busy" | "too_many_streams" | "unreadable" | "wrong_method" | "wrong_token";
+        };
+        Job: {
+            /** @description In the order they were asked for */
+            id: string;
+            /** @description What it does */
+            kind: string;
+            /** @description The session; of batch_plan and batch_run the batch */
+            of: string;
+            /** @description What was asked of it beside its kind: quality, session, ... */
+            wants: Record<string, unknown>;
+            /** @description Who asked for it */
+            by: string;
+            /**
+             * @description How it is
+             * @enum {string}
+             */
+            state: "queued" | "running" | "done" | "failed" | "cancelled";
+            /** @description It stands still until the scan has ended */
+            held: boolean;
+            /** @description Among those that wait, from 1; null: it does not wait */
+            place: number | null;
+            /** @description Of a running one, as its verb calls it */
+            phase: string;
+            /** @description Of the phase, 0 to 1 */
+            share: number;
+            /** @description Until its end: of a solve by the newest price of its session, of a batch_run by its plan and then by its pace, else by how long the last job took that differs in nothing but what it worked on; null where neither is known, and where it takes longer */
+            left_s: number | null;
+            /** @description ISO 8601 */
+            asked: string;
+            /** @description Empty: not yet */
+            began: string;
+            /** @description Empty: not yet */
+            ended: string;
+            /** @description That it ran, without those that it was held for */
+            seconds: number;
+            /** @description Of its verb */
+            exit_code: number | null;
+            /** @description What it said to people */
+            notes: string[];
+            /** @description Why it failed */
+            error: Record<string, unknown> | null;
+            /** @description What its verb prints with --json */
+            result: Record<string, unknown> | null;
         };
         /** Solve */
         SolveJob: {
