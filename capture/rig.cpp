@@ -47,7 +47,7 @@ struct LedEntry {
 void describe(Fields& fields, LedEntry& led) {
   fields.value({.name = "position_mm",
                 .says = "Where it is in the rig frame, mm",
-                .need = Need::kMustSay,
+                .need = kMustSay,
                 .fewest = 3,
                 .most = 3},
                led.position_mm);
@@ -56,7 +56,7 @@ void describe(Fields& fields, LedEntry& led) {
                  "must be at least 1 mm above the table");
   fields.value({.name = "aim",
                 .says = "Its axis; default at the table's centre",
-                .need = Need::kUnlessEmpty,
+                .need = kUnlessEmpty,
                 .fewest = 3,
                 .most = 3},
                led.aim);
@@ -105,7 +105,7 @@ void describe(Fields& fields, Rig::PolariserFilm& film) {
   for (const Polariser state : film.states) names.emplace_back(name_of(state));
   fields.value({.name = "states",
                 .says = "What each scan photographs the LEDs in, one after the other; the first is solved",
-                .need = Need::kUnlessEmpty,
+                .need = kUnlessEmpty,
                 .words = {"crossed", "parallel"}},
                names);
   const bool is_each_once = names.size() < 2 || (names.size() == 2 && names[0] != names[1]);

@@ -25,6 +25,9 @@ install(FILES ${completions}/weft.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash
 install(FILES ${completions}/weft.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _weft)
 install(FILES ${completions}/weft.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 
+# What documents may hold.
+install(DIRECTORY ${PROJECT_BINARY_DIR}/app/cli/manuals/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/weft)
+
 # The desktop.
 install(FILES ${package}/weft.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
 install(FILES ${package}/weft.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)

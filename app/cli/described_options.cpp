@@ -109,7 +109,7 @@ void OptionFields::take(const Field& field, Value value) {
           if constexpr (std::is_same_v<T, std::optional<double>>)
             if (!field.units.empty()) return add_amount(field, *each);
           const Option option = options_.add(names_of(field), each, field.says);
-          if (field.need == Need::kMustSay) option.required();
+          if (field.need == kMustSay) option.required();
           if constexpr (kIsList<T>) list_as(field, std::is_arithmetic_v<typename Inner<T>::Type>, option);
           if (field.most > 0) option.takes(field.fewest, field.most);
           if (!field.words.empty() && field.path != PathTo::kNamed) option.one_of(field.words);

@@ -16,6 +16,7 @@ Verb solve_verb();
 Verb compare_verb();
 Verb calibrate_verb();
 Verb rectify_verb();
+Verb schema_verb();
 Verb finish_verb();
 Verb maps_verb();
 Verb material_verb();

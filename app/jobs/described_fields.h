@@ -16,7 +16,7 @@ namespace weft::app {
 inline void describe_session(Fields& fields, std::filesystem::path& session) {
   fields.value({.name = "session",
                 .says = "Session folder, NAME.weft",
-                .need = Need::kMustSay,
+                .need = kMustSay,
                 .path = PathTo::kSession,
                 .option = ""},
                session);

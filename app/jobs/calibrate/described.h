@@ -12,7 +12,7 @@ namespace weft::app {
 
 /// What a step measures its part from: `says` is what lies there.
 inline void describe_input(Fields& fields, std::filesystem::path& input, const char* says) {
-  fields.value({.name = "input", .says = says, .need = Need::kMustSay, .path = PathTo::kFolder, .option = ""},
+  fields.value({.name = "input", .says = says, .need = kMustSay, .path = PathTo::kFolder, .option = ""},
                input);
 }
 
@@ -26,7 +26,7 @@ inline void describe_kept(Fields& fields, std::filesystem::path& from) {
 inline void describe_new_calibration(Fields& fields, std::filesystem::path& output) {
   fields.value({.name = "output",
                 .says = "Folder of the new calibration, which must not exist",
-                .need = Need::kMustSay,
+                .need = kMustSay,
                 .path = PathTo::kNewFolder,
                 .option = "-o,--output"},
                output);

@@ -181,7 +181,7 @@ CalibrationReport report_of(const GreyChartFit& fit, const Calibration& before, 
 void describe(Fields& fields, CalibrateGreyOptions& o) {
   fields.value({.name = "session",
                 .says = "A scan of the scale, flat on the table",
-                .need = Need::kMustSay,
+                .need = kMustSay,
                 .path = PathTo::kSession,
                 .option = ""},
                o.session);

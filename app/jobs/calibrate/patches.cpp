@@ -132,7 +132,7 @@ std::string patches_left_out(const std::string& part) {
 void describe(Fields& fields, CalibratePatchesOptions& o) {
   fields.value({.name = "session",
                 .says = "A scan of the table while the calibration is fresh",
-                .need = Need::kMustSay,
+                .need = kMustSay,
                 .path = PathTo::kSession,
                 .option = ""},
                o.session);

@@ -39,26 +39,26 @@ std::optional<std::size_t> twin_among(const std::vector<calibration::SheetTag>& 
 
 void describe(Fields& fields, SheetDescription::Tag& t) {
   fields.value({"dictionary", "As OpenCV names it"}, t.dictionary);
-  fields.value({"id", "Its number in the dictionary", {0, 1000000}, Need::kMustSay}, t.id);
-  fields.value({"side_mm", "With its black border, mm", {0.1, 10000}, Need::kMustSay}, t.side_mm);
+  fields.value({"id", "Its number in the dictionary", {0, 1000000}, kMustSay}, t.id);
+  fields.value({"side_mm", "With its black border, mm", {0.1, 10000}, kMustSay}, t.side_mm);
   fields.value({.name = "centre_mm",
                 .says = "Right of and above the sheet's centre, mm",
-                .need = Need::kMustSay,
+                .need = kMustSay,
                 .fewest = 2,
                 .most = 2},
                t.centre_mm);
 }
 
 void describe(Fields& fields, SheetDescription& s) {
-  fields.value({"width_mm", "Of the paper, mm", kPaper_mm, Need::kMustSay}, s.width_mm);
-  fields.value({"height_mm", "Of the paper, mm", kPaper_mm, Need::kMustSay}, s.height_mm);
+  fields.value({"width_mm", "Of the paper, mm", kPaper_mm, kMustSay}, s.width_mm);
+  fields.value({"height_mm", "Of the paper, mm", kPaper_mm, kMustSay}, s.height_mm);
   fields.value({"margin_mm", "Of its border that is not read, mm", {0, 10000}}, s.margin_mm);
   fields.require(2 * s.margin_mm < std::min(s.width_mm, s.height_mm), "margin_mm", "must leave paper to use");
   fields.value(
       {.name = "reflectance",
        .says = "Share of the light that it reflects, one number or three; default: nobody measured it",
        .range = {0.01, 1},
-       .need = Need::kUnlessEmpty,
+       .need = kUnlessEmpty,
        .fewest = 1,
        .most = 3},
       s.reflectance);

@@ -140,7 +140,7 @@ void describe(Fields& fields, CalibrateUpdateOptions& o) {
        .says =
            "A scan after the move that shows tags, white patches or the sheet; or a folder of scans of the "
            "sheet in several poses (weft capture moved)",
-       .need = Need::kMustSay,
+       .need = kMustSay,
        .path = PathTo::kSessionOrSet,
        .option = ""},
       o.session);

@@ -8,7 +8,7 @@ namespace weft::app {
 void describe(Fields& fields, BuildRequest& r) {
   fields.value({.name = "files",
                 .says = "TOML files, or library:NAME",
-                .need = Need::kMustSay,
+                .need = kMustSay,
                 .option = "material",
                 .said = Said::kAtThisMachine},
                r.files);

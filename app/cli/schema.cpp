@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/cli/exit_code.h"
+#include "app/cli/options.h"
+#include "app/cli/terminal.h"
+#include "app/cli/verbs.h"
+#include "app/jobs/schemas/document_schemas.h"
+#include "app/jobs/schemas/documents_page.h"
+#include "core/fields.h"
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SchemaArguments {
+  std::string document;
+  fs::path folder;
+  bool page = false;
+};
+
+std::vector<std::string> names() {
+  std::vector<std::string> all;
+  for (const DocumentSchema& each : document_schemas()) all.emplace_back(each.name);
+  return all;
+}
+
+Result<int> write_all(const fs::path& folder) {
+  if (Result<void> made = make_writable_folder(folder); !made) return std::move(made).error();
+  for (const DocumentSchema& each : document_schemas()) {
+    const fs::path file = folder / fmt::format("{}.schema.json", each.name);
+    if (Result<void> ok = write_json(file, schema_document(each)); !ok) return std::move(ok).error();
+  }
+  print(folder.string());
+  return kDone;
+}
+
+Result<int> print_schemas(const SchemaArguments& a) {
+  if (!a.folder.empty()) return write_all(a.folder);
+  if (a.page) {
+    print(documents_page());
+    return kDone;
+  }
+  const std::vector<DocumentSchema>& all = document_schemas();
+  if (a.document.empty()) {
+    for (const DocumentSchema& each : all) print(fmt::format("{:<20} {}", each.name, each.says));
+    return kDone;
+  }
+  const auto found = std::ranges::find(all, a.document, &DocumentSchema::name);
+  if (found == all.end()) {
+    return Error{ErrorKind::kUsage, "there is no such document", "DOCUMENT",
+                 rule_of_words(names(), a.document), "weft schema lists them"};
+  }
+  print(schema_document(*found).dump(2));
+  return kDone;
+}
+
+Run add_schema(Options& options) {
+  const auto a = std::make_shared<SchemaArguments>();
+  options.add("DOCUMENT", &a->document, "Of this document, such as weft.solve; absent: lists all");
+  options.add("--output", &a->folder, "Write all of them into this folder instead");
+  options.add_flag("--page", &a->page, "Print the fields of all of them as a page of Markdown instead");
+  return [a](const CommonArguments&) { return print_schemas(*a); };
+}
+
+}  // namespace
+
+Verb schema_verb() {
+  return {"schema", "Print what a document that weft writes may hold, as JSON Schema", add_schema};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/schemas/document_schemas.h"
+
+#include <fmt/format.h>
+
+#include "batch/outcome.h"
+#include "batch/plan.h"
+#include "core/calibration.h"
+#include "core/calibration_parts.h"
+#include "core/field_json.h"
+#include "core/session.h"
+#include "core/solve.h"
+
+namespace weft::app {
+namespace {
+
+template <typename Described>
+Json fields_of() {
+  return schema_of<Described>();
+}
+
+}  // namespace
+
+const std::vector<DocumentSchema>& document_schemas() {
+  static const std::vector<DocumentSchema> all = {
+      {"weft.session", "session.json: what was scanned, and every exposure", fields_of<Session>},
+      {"weft.calibration", "calibration.json: what a rig's calibration holds for",
+       fields_of<CalibrationSubject>},
+      {"weft.camera", "camera.json of a calibration", fields_of<CameraPart>},
+      {"weft.response", "response.json of a calibration", fields_of<Response>},
+      {"weft.color", "color.json of a calibration", fields_of<ColorTransform>},
+      {"weft.lights", "lights.json of a calibration", fields_of<LightsPart>},
+      {"weft.solve", "solve.json: what a solve was made of and says of itself", fields_of<SolveFacts>},
+      {"weft.batch", "The first line of a plan", fields_of<batch::Header>},
+      {"weft.batch-session", "A line of a plan: a session that is solved", fields_of<batch::Job>, false},
+      {"weft.batch-left-out", "A line of a plan: a session that is not", fields_of<batch::LeftOut>, false},
+      {"weft.batch-result", "A line of RESULTS/task-N.jsonl: what became of a session",
+       fields_of<batch::Outcome>}};
+  return all;
+}
+
+Json schema_document(const DocumentSchema& document) {
+  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                 {"title", document.name},
+                 {"description", document.says}};
+  schema.update(document.fields());
+  if (!document.is_versioned) return schema;
+  schema["properties"]["schema"] = {{"type", "string"},
+                                    {"pattern", fmt::format("^{}/1(\\.[0-9]+)?$", document.name)}};
+  schema["required"].push_back("schema");
+  return schema;
+}
+
+}  // namespace weft::app
