@@ -197,6 +197,15 @@ class Fields {
         [&values](Fields& inside, std::size_t i) { describe(inside, values[i]); });
   }
 
+  /// One that may not be there, which is another thing than an empty one.
+  template <typename T>
+  void list(Field field, std::optional<std::vector<T>>& values) {
+    field.need = values ? kMaySay : kUnlessEmpty;
+    repeat(
+        field, values ? values->size() : 0, [&values](std::size_t count) { values.emplace(count); },
+        [&values](Fields& inside, std::size_t i) { describe(inside, values->at(i)); });
+  }
+
   /// Fields that only some have.
   virtual void only_if(bool holds, const std::function<void()>& walk) {
     if (holds) walk();

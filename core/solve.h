@@ -122,7 +122,7 @@ struct SolveFacts {
   std::optional<SolvePrice> foretold;  ///< where a price was asked before
   std::optional<SolvePrice> taken;     ///< none in documents of early versions
   std::optional<SolvedBy> solved_by;
-  std::vector<RegisteredShot> registration;
+  std::optional<std::vector<RegisteredShot>> registration;
   std::vector<GateFacts> gates;  ///< of the level `reference`
 
   // Kept for people and passed on to the report; no program looks into them. Null where there is none.

@@ -535,7 +535,8 @@ Json report_document(const std::string& title, const SolveFacts& solve, const Ph
   if (solve.check) report["check"] = object_of(*solve.check);
   if (solve.error) report["error"] = object_of(*solve.error);
   if (!solve.gates.empty()) report["gates"] = list_of(solve.gates);
-  if (!solve.registration.empty()) report["registration"] = list_of(solve.registration);
+  if (solve.registration && !solve.registration->empty())
+    report["registration"] = list_of(*solve.registration);
   if (!solve.sharpening.is_null()) report["sharpening"] = solve.sharpening;
   if (!solve.lateral_color.is_null()) report["lateral_color"] = solve.lateral_color;
   if (!solve.conditions.empty()) report["conditions"] = solve.conditions;

@@ -213,6 +213,7 @@ class Run {
     fullness_ = pipeline::fullness_of(photographs_);
     seconds_.read = watch_.lap();
 
+    facts_.registration.emplace();
     if (is_half()) {
       Result<pipeline::Photographs> half = half_size(photographs_, context_.threads);
       if (!half) return std::move(half).error();

@@ -67,7 +67,7 @@ TEST(SolveFacts, LeaveOutWhatThereIsNot) {
   facts.error.reset();
   const Json json = json_of(facts);
   EXPECT_TRUE(json.contains("gates") && json.contains("input")) << json;
-  for (const char* field : {"error", "reference", "solved_by", "conditions"})
+  for (const char* field : {"error", "reference", "solved_by", "conditions", "registration"})
     EXPECT_FALSE(json.contains(field)) << field;
 }
 

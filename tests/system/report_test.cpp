@@ -18,6 +18,7 @@
 #include "app/jobs/session_input.h"
 #include "app/jobs/solve.h"
 #include "core/calibration.h"
+#include "core/field_json.h"
 #include "pipeline/evidence.h"
 #include "simulator/scene/scene.h"
 #include "solver/diagnosis/diagnosis.h"
@@ -451,7 +452,8 @@ TEST(ReportPage, SaysHowWellLeftOutLightsArePredictedAndWhatThatCannotSee) {
                  {"status", Json::object()}, {"lights", Json::array()},  {"faults", Json::array()},
                  {"budget", Json::array()},  {"seconds", Json::object()}};
   report["sigma_normal_deg"]["median"] = nullptr;
-  report["check"] = json_of(LeftOutFacts{{0.0123, 0.02, 0.0111, 0.015, 90}, {{4, {0.04, 0.06, {}, {}, 12}}}});
+  report["check"] =
+      object_of(LeftOutFacts{{0.0123, 0.02, 0.0111, 0.015, 90}, {{4, {0.04, 0.06, {}, {}, 12}}}});
   const std::string page = app::report_page(report, {});
   EXPECT_THAT(page, HasSubstr("1.23 %"));
   EXPECT_THAT(page, HasSubstr("1.11 %"));

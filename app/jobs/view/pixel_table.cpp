@@ -79,7 +79,7 @@ Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path
   table->photographs_ = std::move(loaded->photographs);
   table->whole_shots_ = json_of(loaded->conditions).value("left_out", Json::array());
   std::vector<std::size_t> moved;
-  for (const RegisteredShot& shot : solve.registration) {
+  for (const RegisteredShot& shot : solve.registration.value_or(std::vector<RegisteredShot>())) {
     const std::vector<int>& leds = table->photographs_.leds;
     const auto led = std::ranges::find(leds, shot.led);
     if (!shot.is_corrected || led == leds.end()) continue;

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/temporary_folder.h"
 
@@ -47,7 +48,7 @@ class Jobs : public testing::Test {
       if (is_so(job)) return job;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    ADD_FAILURE() << "job " << id << " stays " << json_of(*queue_->find(id)).dump();
+    ADD_FAILURE() << "job " << id << " stays " << object_of(*queue_->find(id)).dump();
     return *queue_->find(id);
   }
   JobStatus ended(const std::string& id) {
