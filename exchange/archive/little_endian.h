@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 // Numbers in bytes, lowest first, and the fixed ones of zip archives (APPNOTE 6.3.10, 4.3 and 4.4).
 
@@ -16,14 +15,6 @@ inline void put_u16(std::string& out, std::uint16_t value) {
 inline void put_u32(std::string& out, std::uint32_t value) {
   put_u16(out, static_cast<std::uint16_t>(value & 0xffff));
   put_u16(out, static_cast<std::uint16_t>(value >> 16));
-}
-/// The caller knows that the bytes are there.
-inline std::uint16_t u16_at(std::string_view bytes, std::size_t at) {
-  return static_cast<std::uint16_t>(static_cast<unsigned char>(bytes[at]) |
-                                    (static_cast<unsigned char>(bytes[at + 1]) << 8));
-}
-inline std::uint32_t u32_at(std::string_view bytes, std::size_t at) {
-  return u16_at(bytes, at) | (std::uint32_t{u16_at(bytes, at + 2)} << 16);
 }
 
 namespace zip {

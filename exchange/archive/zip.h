@@ -29,8 +29,4 @@ struct ZipEntry {
 /// entries.
 Result<std::string> zip_of(std::span<const ZipEntry> entries, ZipKind kind);
 
-/// Whether `bytes` are an archive as zip_of() writes it: both headers of every entry agree and follow the
-/// dialect, checksums are right, nothing lies before, between or behind. kBadData with the entry as `where`.
-Result<void> check_zip(std::string_view bytes, ZipKind kind);
-
 }  // namespace weft::exchange

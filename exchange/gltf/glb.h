@@ -32,9 +32,4 @@ struct GlbOptions {
 Result<Document> glb_of(const TexturedMaterial& material, const FileBytes& images,
                         const GlbOptions& options = {});
 
-/// Whether the container is whole: header, lengths and padding of its two chunks, JSON that is an asset 2.0,
-/// views inside the buffer and apart, accessors inside their views and aligned, images that begin as their
-/// type does, indices that point at something. kBadData with the JSON pointer as `where`.
-Result<void> check_glb(std::string_view bytes);
-
 }  // namespace weft::exchange

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -56,10 +55,5 @@ Result<Document> u3m_of(const TexturedMaterial& material, const U3mOptions& opti
 
 /// The archive: `name` (ends in ".u3m") and the files that the document names. Errors as zip_of().
 Result<std::string> u3ma_of(const std::string& name, const Document& document, const FileBytes& files);
-
-/// Whether a text is a U3M 1.1 document: members, ranges and words of its schema, and beyond that shares with
-/// a sum of 1. `pixels_of` gives the pixels of a file that it names, where they are known, and dpi must agree
-/// with them. kBadData with the JSON pointer as `where`.
-Result<void> check_u3m(std::string_view text, const std::map<std::string, Size, std::less<>>& pixels_of = {});
 
 }  // namespace weft::exchange

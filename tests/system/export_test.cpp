@@ -20,12 +20,10 @@
 #include "core/color_spaces.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
-#include "exchange/archive/zip.h"
 #include "exchange/blocks/dds.h"
 #include "exchange/blocks/decode.h"
-#include "exchange/gltf/glb.h"
 #include "exchange/presets/preset.h"
-#include "exchange/u3m/u3m.h"
+#include "tests/exchange/export_checks.h"
 #include "tests/system/program.h"
 #include "tests/system/session_test.h"
 

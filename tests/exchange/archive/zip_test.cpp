@@ -6,6 +6,8 @@
 
 #include <vector>
 
+#include "tests/exchange/export_checks.h"
+
 namespace weft::exchange {
 namespace {
 

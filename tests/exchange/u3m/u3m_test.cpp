@@ -9,6 +9,7 @@
 
 #include "core/json_document.h"
 #include "exchange/archive/zip.h"
+#include "tests/exchange/export_checks.h"
 #include "tests/exchange/sample_material.h"
 
 namespace weft::exchange {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "exchange/archive/zip.h"
+#include "tests/exchange/export_checks.h"
 #include "tests/exchange/sample_material.h"
 
 namespace weft::exchange {

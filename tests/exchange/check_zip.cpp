@@ -5,12 +5,21 @@
 #include <set>
 
 #include "exchange/archive/little_endian.h"
-#include "exchange/archive/zip.h"
 #include "exchange/document.h"
+#include "tests/exchange/export_checks.h"
 
 namespace weft::exchange {
 
 namespace {
+
+/// The caller knows that the bytes are there.
+std::uint16_t u16_at(std::string_view bytes, std::size_t at) {
+  return static_cast<std::uint16_t>(static_cast<unsigned char>(bytes[at]) |
+                                    (static_cast<unsigned char>(bytes[at + 1]) << 8));
+}
+std::uint32_t u32_at(std::string_view bytes, std::size_t at) {
+  return u16_at(bytes, at) | (std::uint32_t{u16_at(bytes, at + 2)} << 16);
+}
 
 Error unlike_zip(const std::string& where, const std::string& why) {
   return {ErrorKind::kBadData, "the archive is not as its format asks", where, why,

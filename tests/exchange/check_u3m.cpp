@@ -6,6 +6,7 @@
 #include "core/json_document.h"
 #include "exchange/u3m/u3m.h"
 #include "exchange/u3m/vocabulary.h"
+#include "tests/exchange/export_checks.h"
 
 namespace weft::exchange {
 

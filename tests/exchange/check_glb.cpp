@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/json_document.h"
-#include "exchange/gltf/glb.h"
 #include "exchange/image_kind.h"
+#include "tests/exchange/export_checks.h"
 
 namespace weft::exchange {
 
