@@ -104,10 +104,4 @@ void add_histories(std::string_view lines, const std::string& plan, std::map<std
   }
 }
 
-std::map<std::string, History> histories_of(std::string_view lines, const std::string& plan) {
-  std::map<std::string, History> all;
-  add_histories(lines, plan, all);
-  return all;
-}
-
 }  // namespace weft::batch

@@ -72,8 +72,7 @@ struct History {
   std::optional<Outcome> lost = {};    ///< the last line after it that is none
   int attempts = 0;
 };
-/// By session, of lines of this plan.
-std::map<std::string, History> histories_of(std::string_view lines, const std::string& plan);
+/// Adds what lines of this plan say, by session.
 void add_histories(std::string_view lines, const std::string& plan, std::map<std::string, History>& all);
 
 }  // namespace weft::batch

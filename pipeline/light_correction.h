@@ -65,7 +65,6 @@ class LightCorrection {
   void subtract_bounces(Rect tile, std::span<const View<float>> readings) const;
   void mark_shadows(Rect tile, std::span<const View<float>> readings) const;
 
-  int shadow_reach_px() const { return shadow_reach_.reach_px; }
   bool shadow_reach_is_capped() const { return shadow_reach_.is_capped; }
   double seconds() const { return seconds_; }  ///< wall time of tracing
 

@@ -239,20 +239,6 @@ std::string plot_svg(const Plot& plot) {
   return Drawing(plot).draw();
 }
 
-Json plot_json(const Plot& plot) {
-  Json series = Json::array();
-  for (const PlotSeries& s : plot.series) {
-    Json points = Json::array();
-    for (const PlotPoint& p : s.points) points.push_back({{"label", p.label}, {"x", p.x}, {"y", p.y}});
-    series.push_back({{"name", s.name}, {"joined", s.joined}, {"points", std::move(points)}});
-  }
-  return {{"schema", "weft.plot/1"},
-          {"title", plot.title},
-          {"x", plot.x_label},
-          {"y", plot.y_label},
-          {"series", std::move(series)}};
-}
-
 std::vector<PlotPoint> frontier_of(const std::vector<PlotSeries>& series) {
   std::vector<PlotPoint> points, frontier;
   for (const PlotSeries& s : series) points.insert(points.end(), s.points.begin(), s.points.end());

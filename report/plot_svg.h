@@ -41,9 +41,6 @@ struct Plot {
 /// plot gives the same bytes.
 std::string plot_svg(const Plot& plot);
 
-/// The same numbers for programs: schema weft.plot/1.
-Json plot_json(const Plot& plot);
-
 /// The points of all series that no other beats, by rising x.
 std::vector<PlotPoint> frontier_of(const std::vector<PlotSeries>& series);
 

@@ -129,8 +129,9 @@ Result<double> off_dyes(const Spectra& spectra, const ColorTransform& transform)
   if (!camera) return camera.error();
   double sum = 0;
   for (const Spectrum& dye : spectra.dyes) {
-    sum += calibration::ciede2000_of(rec709_of_camera(transform, simulator::camera_reflectance(*camera, dye)),
-                                     simulator::rec709_albedo(dye));
+    sum +=
+        calibration::ciede2000_of(rec709_of_camera(transform, simulator::channel_reflectance(*camera, dye)),
+                                  simulator::rec709_albedo(dye));
   }
   return sum / static_cast<double>(std::max<std::size_t>(spectra.dyes.size(), 1));
 }

@@ -130,30 +130,6 @@ Result<std::vector<Finding>> validate(const MapsToValidate& maps, const Validati
   return found;
 }
 
-Result<AlbedoPercentiles> albedo_percentiles(const Surface& surface, int threads) {
-  const MapsToValidate maps = {.surface = &surface};
-  if (Result<void> ok = check_sizes(maps); !ok) return std::move(ok).error();
-  const Image<std::uint8_t> counts = counting(surface);
-  const Image<float> albedo = averaged(surface, counts, threads);
-  AlbedoPercentiles found;
-  for (std::size_t channel = 0; channel < found.values.size(); ++channel) {
-    std::vector<float> values;
-    for (int y = 0; y < counts.height(); ++y) {
-      for (int x = 0; x < counts.width(); ++x) {
-        if (counts(x, y) == 0) continue;
-        const int c = static_cast<int>(channel);
-        values.push_back(c < 3 ? albedo(x, y, c) : static_cast<float>(luminance_at(albedo, x, y)));
-      }
-    }
-    if (values.empty()) return nothing_solved();
-    for (std::size_t i = 0; i < AlbedoPercentiles::kPercent.size(); ++i) {
-      const double rank = AlbedoPercentiles::kPercent[i] / 100 * static_cast<double>(values.size() - 1);
-      found.values[channel][i] = double{value_of_rank<float>(values, static_cast<std::size_t>(rank + 0.5))};
-    }
-  }
-  return found;
-}
-
 Severity worst_of(const std::vector<Finding>& findings) {
   Severity worst = Severity::kPassed;
   for (const Finding& finding : findings) worst = std::max(worst, finding.severity);

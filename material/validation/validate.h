@@ -77,14 +77,6 @@ struct ValidationLimits {
 /// a solution.
 Result<std::vector<Finding>> validate(const MapsToValidate& maps, const ValidationLimits& limits = {});
 
-/// Of the albedo averaged 3 x 3, over pixels that count: R, G, B and luminance, at each percentile.
-struct AlbedoPercentiles {
-  static constexpr std::array<double, 5> kPercent = {0.1, 1, 50, 99, 99.9};
-  std::array<std::array<double, 5>, 4> values{};
-};
-/// kUsage and kBadData as validate().
-Result<AlbedoPercentiles> albedo_percentiles(const Surface& surface, int threads = 0);
-
 /// The worst severity among findings, and verdicts of those that did not pass.
 Severity worst_of(const std::vector<Finding>& findings);
 std::vector<Verdict> verdicts_of(const std::vector<Finding>& findings);

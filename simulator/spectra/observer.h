@@ -32,10 +32,6 @@ ChannelWeights observer_weights();
 /// What a surface gives relative to a perfect white under the same light: 0 to 1 with the camera's weights.
 Rgb channel_reflectance(const ChannelWeights& weights, const Spectrum& reflectance);
 
-inline Rgb camera_reflectance(const ChannelWeights& camera, const Spectrum& reflectance) {
-  return channel_reflectance(camera, reflectance);
-}
-
 /// Linear Rec.709 under D65, white = 1: the albedo that truth holds. A saturated colour outside Rec.709 has a
 /// channel below 0 or above 1. The observer is CIE 1931 by the fit of Wyman, Sloan and Shirley ("Simple
 /// analytic approximations to the CIE XYZ color matching functions", JCGT 2(2), 2013, section 2.2), which

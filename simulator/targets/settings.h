@@ -83,23 +83,6 @@ using PatternSettings = std::variant<PaperSettings, CheckerboardSettings, Charuc
 inline TargetKind kind_of(const PatternSettings& pattern) {
   return static_cast<TargetKind>(pattern.index());
 }
-inline PatternSettings default_pattern(TargetKind kind) {
-  switch (kind) {
-    case TargetKind::kPaper:
-      break;
-    case TargetKind::kCheckerboard:
-      return CheckerboardSettings{};
-    case TargetKind::kCharuco:
-      return CharucoSettings{};
-    case TargetKind::kGreyScale:
-      return GreyScaleSettings{};
-    case TargetKind::kChart:
-      return ChartSettings{};
-    case TargetKind::kTag:
-      return TagSettings{};
-  }
-  return PaperSettings{};
-}
 
 /// What the pattern is printed on.
 struct SheetSettings {

@@ -79,10 +79,6 @@ double DeblurFilter::added_covariance() const {
   return centre(*this) - 1;
 }
 
-double DeblurFilter::variance_at(double share) const {
-  return 1 + share * (2 * added_covariance() + share * added_variance());
-}
-
 DeblurFilter deblur_filter(double sigma_px, double noise) {
   constexpr int kWeights = kDeblurReach + 1;
   using Weights = Eigen::Matrix<double, kWeights, 1>;

@@ -17,8 +17,6 @@ struct DeblurFilter {
   double kept_variance() const;
   double added_variance() const;
   double added_covariance() const;
-  /// Factor on the variance of white noise where `share` of the correction is applied.
-  double variance_at(double share) const;
 };
 
 /// The weights of least squares that turn a Gaussian of `sigma_px` into a point: the Wiener filter for a

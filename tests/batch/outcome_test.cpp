@@ -80,7 +80,8 @@ TEST(Histories, TakeTheLastResultAndPassOverWhatIsNone) {
                             line_of(solved("/a.weft")).substr(0, 40) + "\n" + line_of(solved("/a.weft")) +
                             line_of(ended("/b.weft", State::kFailed, ErrorKind::kBadData)) +
                             line_of(ended("/b.weft", State::kLost, ErrorKind::kTryAgain));
-  const auto histories = histories_of(lines, "p1");
+  std::map<std::string, History> histories;
+  add_histories(lines, "p1", histories);
   ASSERT_EQ(histories.size(), 2U);
   const History &a = histories.at("/a.weft"), &b = histories.at("/b.weft");
   EXPECT_TRUE(a.result && a.result->is_done());
@@ -91,7 +92,9 @@ TEST(Histories, TakeTheLastResultAndPassOverWhatIsNone) {
 }
 
 TEST(Histories, PassOverTheLinesOfAnotherPlan) {
-  EXPECT_TRUE(histories_of(line_of(solved("/a.weft")), "p2").empty());
+  std::map<std::string, History> histories;
+  add_histories(line_of(solved("/a.weft")), "p2", histories);
+  EXPECT_TRUE(histories.empty());
 }
 
 TEST(Failures, AreOfTheSessionAndNotOfTheHour) {

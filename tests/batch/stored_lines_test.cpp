@@ -51,7 +51,8 @@ TEST(StoredLines, OfResultsAreRead) {
     const std::string text = stored("weft.batch-result-" + version + "/task-0.jsonl");
     const Result<Plan> plan = plan_from_text(stored("weft.batch-" + version + "/night.jsonl"), "night.jsonl");
     ASSERT_TRUE(plan) << plan.error().message();
-    const auto histories = histories_of(text, plan->header.id);
+    std::map<std::string, History> histories;
+    add_histories(text, plan->header.id, histories);
     ASSERT_EQ(histories.size(), 1U);
     const History& history = histories.begin()->second;
     ASSERT_TRUE(history.result);

@@ -110,11 +110,5 @@ TEST(PlotSvg, BreaksALegendThatIsTooLong) {
   EXPECT_THAT(svg, HasSubstr("<text x='77.5' y='44.0'" + text));
 }
 
-TEST(PlotJson, HoldsEveryPoint) {
-  const Json json = plot_json(some_plot());
-  EXPECT_EQ(json["schema"], "weft.plot/1");
-  EXPECT_EQ(json["series"][1]["points"][1]["y"], 6.0);
-}
-
 }  // namespace
 }  // namespace weft::report

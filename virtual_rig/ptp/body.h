@@ -87,7 +87,6 @@ class PtpBody {
   Result<Bytes> develop(const Exposure& exposure);
   void keep(const Exposure& exposure, Bytes file);
   std::uint32_t new_handle(bool to_memory) const;
-  void announce_later(const std::vector<Notice>& notices);
 
   void befall_before_next();
   void befall(PtpFault fault);

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <ctime>
 
-#include "material/finish/mean_repeat.h"
 #include "material/finish/tile.h"
 #include "tests/material/finish/cloths.h"
+#include "tests/material/finish/repeating_share.h"
 
 namespace weft::material {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "core/solve_record.h"
 #include "core/statistics.h"
-#include "material/finish/mean_repeat.h"
 #include "tests/material/finish/cloths.h"
+#include "tests/material/finish/repeating_share.h"
 
 namespace weft::material {
 namespace {

@@ -330,19 +330,6 @@ TEST(Validation, LooksAtNoHoleAndNoPixelWithoutASolution) {
   EXPECT_EQ(finding("GAMUT", cloth.maps()).severity, Severity::kPassed);
 }
 
-TEST(Validation, TellsThePercentilesOfTheAlbedo) {
-  Cloth cloth;
-  cloth.paint([](int x, int) { return std::array{0.01 * x, 0.3, 0.2}; });
-  for (int y = 0; y < kSide; ++y) cloth.surface.status(47, y) = kNoSolution;
-  const Result<AlbedoPercentiles> found = albedo_percentiles(cloth.surface, 1);
-  ASSERT_TRUE(found);
-  EXPECT_NEAR(found->values[0][2], 0.23, 1e-6);
-  EXPECT_NEAR(found->values[0][4], 0.455, 1e-6) << "the last column is averaged with one neighbour alone";
-  EXPECT_NEAR(found->values[1][0], 0.3, 1e-6);
-  EXPECT_NEAR(found->values[3][2], 0.2126 * 0.23 + 0.7152 * 0.3 + 0.0722 * 0.2, 1e-6);
-  EXPECT_FALSE(albedo_percentiles({}));
-}
-
 TEST(Validation, IsRefusedWithoutAnythingToLookAt) {
   EXPECT_FALSE(validate({}));
   Cloth cloth;

@@ -87,7 +87,7 @@ std::array<double, 2> daylight(double kelvin) {
 
 TEST(Observer, GivesAFlatReflectanceItsValueInEveryChannel) {
   for (const double value : {0.0, 0.18, 0.5, 1.0}) {
-    const Rgb by_camera = camera_reflectance(camera(), flat_spectrum(value));
+    const Rgb by_camera = channel_reflectance(camera(), flat_spectrum(value));
     const Rgb by_eye = rec709_albedo(flat_spectrum(value));
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_NEAR(by_camera[c], value, 1e-14);

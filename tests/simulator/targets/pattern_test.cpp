@@ -145,10 +145,13 @@ TEST(Pattern, NamesTheSettingThatIsOutOfItsRange) {
 }
 
 TEST(Pattern, HasADefaultOfEveryKind) {
-  for (const TargetKind kind : {TargetKind::kPaper, TargetKind::kCheckerboard, TargetKind::kCharuco,
-                                TargetKind::kGreyScale, TargetKind::kChart, TargetKind::kTag}) {
-    EXPECT_EQ(kind_of(default_pattern(kind)), kind);
-    EXPECT_TRUE(make_pattern(default_pattern(kind)));
+  const std::pair<TargetKind, PatternSettings> defaults[] = {
+      {TargetKind::kPaper, PaperSettings()},     {TargetKind::kCheckerboard, CheckerboardSettings()},
+      {TargetKind::kCharuco, CharucoSettings()}, {TargetKind::kGreyScale, GreyScaleSettings()},
+      {TargetKind::kChart, ChartSettings()},     {TargetKind::kTag, TagSettings()}};
+  for (const auto& [kind, pattern] : defaults) {
+    EXPECT_EQ(kind_of(pattern), kind);
+    EXPECT_TRUE(make_pattern(pattern)) << pattern.index();
   }
 }
 
