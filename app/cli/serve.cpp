@@ -71,8 +71,9 @@ Result<void> say_address(const RigServer& server, const std::string& rig, bool j
 }
 
 void open_page(const std::string& address, const std::string& token) {
-  if (const Result<void> opened = start_apart({"xdg-open", page_address(address, token)}); !opened)
-    note("weft: no browser could be opened (xdg-open): open " + address);
+  const Result<pid_t> opened = start_process(
+      {.command = {"xdg-open", page_address(address, token)}, .group = ProcessGroup::kOwnSession});
+  if (!opened) note("weft: no browser could be opened (xdg-open): open " + address);
 }
 
 /// Opens the page of a daemon that owns this rig already; nothing where none does.

@@ -4,9 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,7 +16,6 @@
 #include <utility>
 
 #include "core/files.h"
-#include "core/process.h"
 
 namespace weft::capture {
 namespace {
@@ -27,55 +24,11 @@ using Steady = std::chrono::steady_clock;
 
 constexpr std::size_t kLongestLine = std::size_t{1} << 20;
 constexpr std::uintmax_t kMostLogBytes = std::uintmax_t{1} << 20;
+constexpr double kKill_s = 10;  // for the system to clear a killed process away
 
 Error hung(const std::string& why) {
   return {ErrorKind::kTryAgain, "the camera hangs", "weft-camera", why,
           "try again; if it stays so, switch the camera off and on"};
-}
-
-/// This process's variables with some replaced.
-std::vector<std::string> merged(const Environment& environment) {
-  std::vector<std::string> all;
-  for (char** each = environ; *each != nullptr; ++each) {
-    const std::string_view variable = *each;
-    const std::string_view name = variable.substr(0, variable.find('='));
-    if (std::ranges::none_of(environment, [name](const auto& own) { return own.first == name; }))
-      all.emplace_back(variable);
-  }
-  for (const auto& [name, value] : environment) all.push_back(fmt::format("{}={}", name, value));
-  return all;
-}
-
-/// Starts the program with one end of a socket as its input and output, in a process group of its own and
-/// with no signal blocked; errno.
-int spawn(const std::filesystem::path& program, const Environment& environment,
-          const std::filesystem::path& log, int socket, pid_t& pid) {
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, socket, STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, socket, STDOUT_FILENO);
-  if (!log.empty())
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_APPEND,
-                                     0644);
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
-
-  std::string path = program.string();
-  std::array<char*, 2> arguments = {path.data(), nullptr};
-  std::vector<std::string> variables = merged(environment);
-  std::vector<char*> pointers;
-  for (std::string& variable : variables) pointers.push_back(variable.data());
-  pointers.push_back(nullptr);
-  const int failed =
-      posix_spawn(&pid, path.c_str(), &actions, &attributes, arguments.data(), pointers.data());
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  return failed;
 }
 
 /// A log that has grown becomes LOG.1: what a crash said outlives the next start.
@@ -98,32 +51,40 @@ Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::filesyste
   std::array<int, 2> sockets;
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0)
     return Error{ErrorKind::kTryAgain, "no socket for weft-camera", "", system_reason(errno), "try again"};
+  Descriptor ours(sockets[0]);
+  const Descriptor its(sockets[1]);
   if (!log.empty()) turn_over(log);
-  pid_t pid = 0;
-  const int failed = spawn(program, environment, log, sockets[1], pid);
-  ::close(sockets[1]);
-  if (failed == 0) return std::unique_ptr<WorkerProcess>(new WorkerProcess(pid, sockets[0]));
-  ::close(sockets[0]);
-  return Error{failed == EAGAIN || failed == ENOMEM ? ErrorKind::kTryAgain : ErrorKind::kNoInput,
-               "the camera's program cannot be started", program.string(), system_reason(failed),
-               "install weft whole: weft-camera belongs beside weft"};
+  const Descriptor said = log.empty() ? Descriptor() : Descriptor(log, O_WRONLY | O_CREAT | O_APPEND);
+  if (!log.empty() && !said) return cannot_write(log, errno);
+  ProcessStart start = {.command = {program.string()},
+                        .input = its.get(),
+                        .output = its.get(),
+                        .errors = log.empty() ? STDERR_FILENO : said.get(),
+                        .group = ProcessGroup::kOwn};
+  for (const auto& [name, value] : environment)
+    start.environment.push_back(fmt::format("{}={}", name, value));
+  auto started = ChildProcess::start(start);
+  if (started) {
+    return std::unique_ptr<WorkerProcess>(new WorkerProcess(std::move(*started), std::move(ours)));
+  }
+  return Error{started.error().kind, "the camera's program cannot be started", program.string(),
+               started.error().why, "install weft whole: weft-camera belongs beside weft"};
 }
 
 WorkerProcess::~WorkerProcess() {
   end(Steady::now());
-  ::close(socket_);
 }
 
 Result<void> WorkerProcess::send(std::string_view line) {
   std::string bytes(line);
   bytes += '\n';
-  const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  const ssize_t sent = ::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (sent == static_cast<ssize_t>(bytes.size())) return {};
   return sent < 0 && errno == EPIPE ? ended() : hung("it does not read what it is asked");
 }
 
 bool WorkerProcess::wait_readable(Deadline deadline) const {
-  pollfd readable = {socket_, POLLIN, 0};
+  pollfd readable = {socket_.get(), POLLIN, 0};
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Steady::now()).count();
     const int ready = ::poll(&readable, 1, static_cast<int>(std::clamp(left, 0L, 3'600'000L)));
@@ -157,7 +118,7 @@ Result<std::string> WorkerProcess::read_bytes(std::size_t count, Deadline deadli
 Result<void> WorkerProcess::receive(Deadline deadline) {
   if (!wait_readable(deadline)) return hung("it has not answered in time");
   std::array<char, 16384> block;
-  const ssize_t n = ::recv(socket_, block.data(), block.size(), MSG_DONTWAIT);
+  const ssize_t n = ::recv(socket_.get(), block.data(), block.size(), MSG_DONTWAIT);
   if (n < 0 && (errno == EINTR || errno == EAGAIN)) return {};
   if (n <= 0) return ended();
   received_.append(block.data(), static_cast<std::size_t>(n));
@@ -165,27 +126,19 @@ Result<void> WorkerProcess::receive(Deadline deadline) {
 }
 
 void WorkerProcess::end(Deadline deadline) {
-  if (pid_ <= 0) return;
-  ::shutdown(socket_, SHUT_WR);
-  while (::waitpid(pid_, &status_, WNOHANG) == 0) {
-    if (Steady::now() < deadline) {
-      ::usleep(2000);
-      continue;
-    }
-    ::kill(pid_, SIGKILL);
-    while (::waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {
-    }
-    break;
-  }
-  pid_ = 0;
+  ::shutdown(socket_.get(), SHUT_WR);
+  if (process_->wait(std::chrono::duration<double>(deadline - Steady::now()).count())) return;
+  process_->signal(SIGKILL);
+  process_->wait(kKill_s);
 }
 
 /// It has closed its end of the socket, so that it is dead or about to be.
 Error WorkerProcess::ended() {
   end(Steady::now() + std::chrono::milliseconds(500));
-  const std::string why = WIFSIGNALED(status_) ? fmt::format("killed by signal {}, {}", WTERMSIG(status_),
-                                                             strsignal(WTERMSIG(status_)))
-                                               : fmt::format("ended with code {}", WEXITSTATUS(status_));
+  const int killed_by = process_->killed_by();
+  const std::string why = killed_by != 0
+                              ? fmt::format("killed by signal {}, {}", killed_by, strsignal(killed_by))
+                              : fmt::format("ended with code {}", process_->wait(0).value_or(0));
   return {ErrorKind::kTryAgain, "the camera's program has ended", "weft-camera", why,
           "take the photograph again"};
 }

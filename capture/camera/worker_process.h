@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -11,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/descriptor.h"
+#include "core/process.h"
 #include "core/result.h"
 
 namespace weft::capture {
@@ -37,7 +37,7 @@ class WorkerProcess {
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
-  pid_t pid() const { return pid_; }
+  pid_t pid() const { return process_->pid(); }
   /// Sends a line. kTryAgain where it is dead or takes nothing any more.
   Result<void> send(std::string_view line);
   /// The next line without its end. kTryAgain at the deadline, and where it has ended: `why` says by what.
@@ -48,14 +48,14 @@ class WorkerProcess {
   void end(Deadline deadline);
 
  private:
-  WorkerProcess(pid_t pid, int socket) : pid_(pid), socket_(socket) {}
+  WorkerProcess(std::unique_ptr<ChildProcess> process, Descriptor socket)
+      : process_(std::move(process)), socket_(std::move(socket)) {}
   bool wait_readable(Deadline deadline) const;
   Result<void> receive(Deadline deadline);
   Error ended();
 
-  pid_t pid_;
-  int socket_;
-  int status_ = 0;
+  std::unique_ptr<ChildProcess> process_;
+  Descriptor socket_;
   std::string received_;
 };
 

@@ -2,8 +2,6 @@
 #include "virtual_rig/program/background.h"
 
 #include <fcntl.h>
-#include <spawn.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,7 +10,8 @@
 #include <cstdio>
 
 #include "app/cli/exit_code.h"
-#include "virtual_rig/program/spawn.h"
+#include "core/descriptor.h"
+#include "core/process.h"
 
 namespace weft::app {
 namespace {
@@ -26,44 +25,33 @@ ssize_t read_one(int fd) {
   return n;
 }
 
-/// This program, which keeps `ready` open and no other end of the pipe.
-int spawn_again(std::vector<std::string> arguments, int ready, pid_t& child) {
-  std::vector<std::string> command = {"weft-virtual-rig", "--ready", std::to_string(ready)};
-  command.insert(command.end(), arguments.begin(), arguments.end());
-  posix_spawn_file_actions_t files;
-  ::posix_spawn_file_actions_init(&files);
-  ::posix_spawn_file_actions_adddup2(&files, ready, ready);  // to itself: it loses its close-on-exec
-  posix_spawnattr_t settings;
-  ::posix_spawnattr_init(&settings);
-  ::posix_spawnattr_setflags(&settings, POSIX_SPAWN_SETSID);
-  const int failed =
-      ::posix_spawn(&child, "/proc/self/exe", &files, &settings, pointers_to(command).data(), environ);
-  ::posix_spawnattr_destroy(&settings);
-  ::posix_spawn_file_actions_destroy(&files);
-  return failed;
-}
-
 }  // namespace
 
-int run_in_background(std::vector<std::string> arguments) {
-  std::array<int, 2> ready = {};
-  if (::pipe2(ready.data(), O_CLOEXEC) != 0) return kTryAgainError;
-  pid_t child = -1;
-  const int failed = spawn_again(std::move(arguments), ready[1], child);
-  ::close(ready[1]);
-  const bool is_ready = failed == 0 && read_one(ready[0]) == 1;
-  ::close(ready[0]);
-  if (failed != 0) return kTryAgainError;
-  if (is_ready) return kDone;
+int run_in_background(const std::vector<std::string>& arguments) {
+  std::array<int, 2> ends = {};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return kTryAgainError;
+  const Descriptor ready(ends[0]);
+  Descriptor its(ends[1]);
+  ProcessStart again = {
+      .command = {program_beside("weft-virtual-rig").string(), "--ready", std::to_string(its.get())},
+      .input = STDIN_FILENO,
+      .output = STDOUT_FILENO,
+      .errors = STDERR_FILENO,
+      .handed_on = its.get(),
+      .group = ProcessGroup::kOwnSession};
+  again.command.insert(again.command.end(), arguments.begin(), arguments.end());
+  const Result<pid_t> child = start_process(again);
+  its = Descriptor();
+  if (!child) return kTryAgainError;
+  if (read_one(ready.get()) == 1) return kDone;
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  while (::waitpid(*child, &status, 0) < 0 && errno == EINTR) {
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 void detach(int ready) {
   if (ready < 0) return;
-  ::prctl(PR_SET_NAME, "weft-virtual-rig");  // the kernel calls what was run as /proc/self/exe "exe"
   std::fflush(nullptr);
   const int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(null, stream);

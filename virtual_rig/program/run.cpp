@@ -3,34 +3,28 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/signalfd.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <future>
 #include <optional>
-#include <string_view>
 
 #include "app/cli/exit_code.h"
-#include "core/files.h"
+#include "core/process.h"
 #include "virtual_rig/program/background.h"
-#include "virtual_rig/program/spawn.h"
 #include "virtual_rig/rig_process.h"
 
 namespace weft::app {
 namespace {
 
-using std::chrono::steady_clock;
 using virtual_rig::VirtualRig;
 
 constexpr int kPoll_ms = 100;
-constexpr std::chrono::seconds kGrace(10);
+constexpr double kGrace_s = 10;
 constexpr pid_t kNoParent = 0;
 
 /// SIGINT, SIGTERM and SIGCHLD as a descriptor: no thread is interrupted by them.
@@ -50,7 +44,6 @@ class Signals {
   Signals& operator=(const Signals&) = delete;
 
   int descriptor() const { return fd_; }
-  const sigset_t& before() const { return before_; }
   /// The next one that has come, if any; a child's end is none.
   std::optional<int> take() const {
     signalfd_siginfo info = {};
@@ -65,69 +58,18 @@ class Signals {
   int fd_ = -1;
 };
 
-/// This process's environment with the rig's in front.
-std::vector<std::string> environment_of(const VirtualRig& rig) {
-  std::vector<std::string> lines = rig.environment();
-  const std::size_t own = lines.size();
-  for (char** inherited = environ; *inherited != nullptr; ++inherited) {
-    const std::string_view line = *inherited;
-    bool is_replaced = false;
-    for (std::size_t i = 0; i < own; ++i) {
-      const std::string_view name = std::string_view(lines[i]).substr(0, lines[i].find('=') + 1);
-      is_replaced = is_replaced || line.starts_with(name);
-    }
-    if (!is_replaced) lines.emplace_back(line);
-  }
-  return lines;
+/// A program that runs inside the rig's environment.
+Result<std::unique_ptr<ChildProcess>> start_inside(const VirtualRig& rig,
+                                                   const std::vector<std::string>& command) {
+  auto child = ChildProcess::start({.command = command,
+                                    .environment = rig.environment(),
+                                    .input = STDIN_FILENO,
+                                    .output = STDOUT_FILENO,
+                                    .errors = STDERR_FILENO});
+  if (child) return child;
+  return Error{ErrorKind::kNoInput, "cannot run", command[0], child.error().why,
+               "name a program and its arguments after --"};
 }
-
-/// A program that runs inside the rig's environment; it does not outlive this object.
-class Child {
- public:
-  static Result<Child> start(const VirtualRig& rig, std::vector<std::string> command, const sigset_t& mask) {
-    std::vector<std::string> environment = environment_of(rig);
-    posix_spawnattr_t settings;
-    ::posix_spawnattr_init(&settings);
-    sigset_t defaults;
-    sigemptyset(&defaults);
-    sigaddset(&defaults, SIGPIPE);
-    ::posix_spawnattr_setsigdefault(&settings, &defaults);
-    ::posix_spawnattr_setsigmask(&settings, &mask);
-    ::posix_spawnattr_setflags(&settings, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-    pid_t id = -1;
-    const int failed = ::posix_spawnp(&id, command[0].c_str(), nullptr, &settings,
-                                      pointers_to(command).data(), pointers_to(environment).data());
-    ::posix_spawnattr_destroy(&settings);
-    if (failed == 0) return Child(id);
-    return Error{ErrorKind::kNoInput, "cannot run", command[0], system_reason(failed),
-                 "name a program and its arguments after --"};
-  }
-  Child(Child&& other) noexcept : id_(std::exchange(other.id_, -1)) {}
-  Child& operator=(Child&&) = delete;
-  ~Child() { end(); }
-
-  /// Its exit code, once it has ended.
-  std::optional<int> ended() {
-    int status = 0;
-    if (id_ < 0 || ::waitpid(id_, &status, WNOHANG) != id_) return {};
-    id_ = -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  }
-
-  void end() {
-    if (id_ < 0) return;
-    ::kill(id_, SIGTERM);
-    const auto until = steady_clock::now() + kGrace;
-    while (!ended() && steady_clock::now() < until) ::usleep(10000);
-    if (id_ < 0) return;
-    ::kill(id_, SIGKILL);
-    ::waitpid(id_, nullptr, 0);
-  }
-
- private:
-  explicit Child(pid_t id) : id_(id) {}
-  pid_t id_;
-};
 
 /// VirtualRig::start() that a signal ends.
 Result<std::unique_ptr<VirtualRig>> start_rig(virtual_rig::VirtualRigOptions options,
@@ -163,7 +105,7 @@ void say_ready(const VirtualRig& rig, const std::filesystem::path& folder) {
 }
 
 /// Until a signal (its number), "end" (nothing) or the end of the parent or child (nothing, or its code).
-Result<int> wait_for_end(const VirtualRig& rig, Child* child, const Signals& signals, pid_t parent) {
+Result<int> wait_for_end(const VirtualRig& rig, ChildProcess* child, const Signals& signals, pid_t parent) {
   while (true) {
     std::array<pollfd, 2> waiting = {pollfd{signals.descriptor(), POLLIN, 0},
                                      pollfd{rig.end_descriptor(), POLLIN, 0}};
@@ -171,7 +113,7 @@ Result<int> wait_for_end(const VirtualRig& rig, Child* child, const Signals& sig
     if (signals.take()) return child != nullptr ? kInterruptedError : kDone;
     if (waiting[1].revents != 0) return kDone;
     if (child != nullptr) {
-      if (const std::optional<int> code = child->ended()) return *code;
+      if (const std::optional<int> code = child->wait(0)) return *code;
     }
     if (parent != kNoParent && ::getppid() != parent) return kDone;
   }
@@ -190,9 +132,12 @@ Result<int> run_virtual_rig(const virtual_rig::VirtualRigOptions& options,
     detach(ready);
     return wait_for_end(**rig, nullptr, signals, ready < 0 ? parent : kNoParent);
   }
-  Result<Child> child = Child::start(**rig, command, signals.before());
+  const Result<std::unique_ptr<ChildProcess>> child = start_inside(**rig, command);
   if (!child) return child.error();
-  return wait_for_end(**rig, &*child, signals, parent);
+  const Result<int> code = wait_for_end(**rig, child->get(), signals, parent);
+  (*child)->signal(SIGTERM);
+  (*child)->wait(kGrace_s);
+  return code;
 }
 
 }  // namespace weft::app

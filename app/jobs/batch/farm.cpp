@@ -21,25 +21,21 @@ namespace fs = std::filesystem;
 
 constexpr double kMostToAnswer_s = 300;  // sbatch waits for a controller that is away, and so do we
 constexpr const char* kLogs = "log";     // below the results: what tasks print
-constexpr int kNotFound = 127;           // of env
 
 // What a program of Slurm prints.
 Result<std::string> ask_slurm(const std::vector<std::string>& words) {
   const TemporaryFolder folder;
   const fs::path output = folder.path() / "output", errors = folder.path() / "errors";
-  std::vector<std::string> command = {"/usr/bin/env"};
-  command.insert(command.end(), words.begin(), words.end());
-  const Result<std::unique_ptr<ChildProcess>> child = ChildProcess::start(command, {}, output, errors);
-  if (!child) return child.error();
+  const Result<std::unique_ptr<ChildProcess>> child = ChildProcess::start(words, {}, output, errors);
+  if (!child) {
+    return Error{ErrorKind::kNoInput, "there is no Slurm on this machine", words.front(),
+                 "its programs are not on $PATH",
+                 "run it where jobs are submitted, or give a farm the lines of weft batch commands"};
+  }
   const std::optional<int> code = (*child)->wait(kMostToAnswer_s);
   if (!code) {
     return Error{ErrorKind::kTryAgain, "Slurm does not answer", words.front(),
                  fmt::format("{:.0f} seconds are over", kMostToAnswer_s), "look at scontrol ping"};
-  }
-  if (code == kNotFound) {
-    return Error{ErrorKind::kNoInput, "there is no Slurm on this machine", words.front(),
-                 "its programs are not on $PATH",
-                 "run it where jobs are submitted, or give a farm the lines of weft batch commands"};
   }
   if (code == 0) return read_text(output);
   const Result<std::string> said = read_text(errors);

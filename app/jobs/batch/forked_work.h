@@ -24,9 +24,10 @@ struct ForkedEnd {
   std::uint64_t peak_bytes = 0;  ///< of memory that it held at once
 };
 
-/// Work in a process of its own, forked from this one: whatever becomes of it, memory that runs out or a bug,
-/// costs this one nothing. It is killed with this object, and with this process. The caller has not started
-/// threads that hold locks, and has run nothing on those of parallel_for(): they do not exist in the fork.
+/// Work in a process of its own, forked from this one and no program of its own (core/process), since a
+/// function is handed on with all that it holds: whatever becomes of it, memory that runs out or a bug, costs
+/// this one nothing. It is killed with this object, and with this process. The caller has not started threads
+/// that hold locks, and has run nothing on those of parallel_for(): they do not exist in the fork.
 class ForkedWork {
  public:
   /// `work` returns what is said of it; its stop token is that of SIGTERM and SIGINT. What it throws ends the

@@ -2,16 +2,13 @@
 #include "app/jobs/batch/outside.h"
 
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <csignal>
 #include <system_error>
 
 #include "batch/farm.h"
 #include "core/files.h"
+#include "core/process.h"
 #include "core/solve.h"
 
 namespace weft::app {
@@ -55,23 +52,16 @@ std::string filled(const std::string& command, const std::string& src, const std
 
 std::string run_outside(const std::string& command, const std::string& src, const std::string& dst) {
   const std::string text = filled(command, src, dst);
-  const pid_t child = ::fork();
-  if (child < 0) return system_reason(errno);
-  if (child == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    std::signal(SIGTERM, SIG_DFL);
-    std::signal(SIGINT, SIG_DFL);
-    ::dup2(STDERR_FILENO, STDOUT_FILENO);
-    ::execl("/bin/sh", "sh", "-c", text.c_str(), nullptr);
-    ::_exit(127);
-  }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) return system_reason(errno);
-  }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
-  return WIFEXITED(status) ? fmt::format("\"{}\" ended with {}", text, WEXITSTATUS(status))
-                           : fmt::format("\"{}\" was ended by signal {}", text, WTERMSIG(status));
+  const auto child = ChildProcess::start({.command = {"/bin/sh", "-c", text},
+                                          .input = STDIN_FILENO,
+                                          .output = STDERR_FILENO,
+                                          .ends_with_parent = true});
+  if (!child) return child.error().why;
+  const int code = (*child)->wait();
+  if (code == 0) return "";
+  const int killed_by = (*child)->killed_by();
+  return killed_by == 0 ? fmt::format("\"{}\" ended with {}", text, code)
+                        : fmt::format("\"{}\" was ended by signal {}", text, killed_by);
 }
 
 std::string store_outside(const std::string& command, const fs::path& solve, const std::string& dst) {

@@ -251,9 +251,8 @@ void JobQueue::hold(bool is_held) {
   woken_.notify_all();
 }
 
-// To the running job with the processes that it started: they are a group, once setsid has made it.
+// To the running job with the processes that it started.
 void JobQueue::signal_all(int number) const {
-  child_->signal(number);
   ::kill(-child_->pid(), number);
 }
 
@@ -305,24 +304,19 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
     return fail(job, {ErrorKind::kNoInput, "what the job works on is gone", gone,
                       "it was there when the job was asked for", "bring it back, then retry"});
   }
-  // setpriv: the job ends when this process is killed.
-  std::vector<std::string> command = {"/usr/bin/setsid",
-                                      "/usr/bin/setpriv",
-                                      "--pdeathsig",
-                                      "KILL",
-                                      "/usr/bin/nice",
-                                      "-n",
-                                      std::to_string(options_.niceness)};
-  if (options_.memory_bytes > 0) {
-    command.insert(command.end(), {"/usr/bin/prlimit", fmt::format("--data={}", options_.memory_bytes)});
-  }
-  command.push_back(options_.program.string());
+  std::vector<std::string> command = {options_.program.string()};
   for (const std::string& argument : job.spec.arguments) command.push_back(with_files(argument, id));
   std::ranges::move(foretold(job.spec), std::back_inserter(command));
   command.insert(command.end(), {"--json", "--json-events"});
   const fs::path output = file_of(id, ".out");
   Result<std::unique_ptr<ChildProcess>> started =
-      ChildProcess::start(command, {}, output, file_of(id, ".log"));
+      ChildProcess::start({.command = std::move(command),
+                           .output = output,
+                           .errors = file_of(id, ".log"),
+                           .group = ProcessGroup::kOwnSession,
+                           .ends_with_parent = true,
+                           .niceness = options_.niceness,
+                           .memory_bytes = options_.memory_bytes});
   job.began = iso_time_now();
   job.phase.clear();
   job.share = 0;
