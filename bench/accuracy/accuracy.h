@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,15 @@
 
 namespace weft::bench {
 
+/// What is asked of a table. Each reads what concerns it.
 struct AccuracyTableOptions {
   SceneSet set = SceneSet::kHeldOut;
   std::uint32_t seed = 1;
-  bool quick = false;                ///< one small patch a scene, no yardsticks
-  std::string scene;                 ///< this one alone; empty: all
-  std::vector<std::string> methods;  ///< these and the oracle; empty: all
+  bool quick = false;                                ///< one small patch a scene, no yardsticks
+  std::string scene;                                 ///< this scene, case or cloth alone; empty: all
+  std::vector<std::string> methods;                  ///< these and the oracle; empty: all
+  double megapixels = 4;                             ///< of whole frames
+  std::filesystem::path scenes = "testdata/scenes";  ///< from where the program runs
   int threads = 0;
 };
 
@@ -51,5 +55,16 @@ Result<std::vector<int>> leds_by_bound(int count);
 /// materials, six seeds), of either set, small patches. A row for each method and group: how many there are,
 /// how many have the bit on over 20 percent of pixels, and the least, median and largest share.
 Result<Rows> specular_warnings(const AccuracyTableOptions& options);
+
+// The others say in their files what their columns are.
+Result<Rows> accuracy_bound(const AccuracyTableOptions& options);
+Result<Rows> chain_table(const AccuracyTableOptions& options);
+Result<Rows> accuracy_curves(const AccuracyTableOptions& options);
+Result<Rows> accuracy_gates(const AccuracyTableOptions& options);
+Result<Rows> explain_table(const AccuracyTableOptions& options);
+Result<Rows> gloss_table(const AccuracyTableOptions& options);
+Result<Rows> level_speed(const AccuracyTableOptions& options);
+/// Of whole sessions of these sizes.
+Result<Rows> price_table(const AccuracyTableOptions& options, const std::vector<double>& megapixels);
 
 }  // namespace weft::bench

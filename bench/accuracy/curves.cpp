@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/accuracy/curves.h"
+#include "bench/accuracy/accuracy.h"
 
 #include <fmt/format.h>
 
@@ -38,6 +38,9 @@ std::vector<Setting> settings() {
 
 }  // namespace
 
+/// What else trades accuracy for time, each as a curve over all scenes: resolution (preview, fast), float or
+/// double (robust in float32 kernels and in double), rays a pixel and rounds of the reference level. Rows:
+/// "curve", "setting", "mean_deg", "p95_deg", "albedo_mean_rel", "ns_per_pixel", "threads".
 Result<Rows> accuracy_curves(const AccuracyTableOptions& options) {
   const std::vector<Setting> all = settings();
   const int threads = resolved_threads(options.threads);
@@ -65,6 +68,9 @@ Result<Rows> accuracy_curves(const AccuracyTableOptions& options) {
   return table;
 }
 
+/// What the gates of the reference level decide, by scene: mean error with each gate's say, and with all
+/// stages forced. Rows: "scene", "method" (gated, forced), "mean_deg", "p95_deg", "albedo_mean_rel",
+/// "ns_per_pixel".
 Result<Rows> accuracy_gates(const AccuracyTableOptions& options) {
   const std::vector<Contender> both = {{"gated", by_reference({})},
                                        {"forced", by_reference({.force_stages = true})}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/accuracy/explain.h"
+#include "bench/accuracy/accuracy.h"
 
 #include "bench/accuracy/coverage.h"
 #include "core/parallel.h"
@@ -7,7 +7,10 @@
 
 namespace weft::bench {
 
-Result<Rows> explain_table(const ExplainOptions& options) {
+/// What `weft solve --explain` predicts, by `normal_deg` of sigma.exr, against what comes true: a row for
+/// each scene and level, with the mean of both angles over all pixels with a solution, and their ratio. A
+/// pixel of a preview is held against the four that it stands for.
+Result<Rows> explain_table(const AccuracyTableOptions& options) {
   const int threads = resolved_threads(options.threads);
   Rows rows;
   for (const AccuracyScene& scene : accuracy_scenes(options.set, options.seed, options.quick)) {

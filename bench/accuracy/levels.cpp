@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/accuracy/levels.h"
+#include "bench/accuracy/accuracy.h"
 
 #include <utility>
 
@@ -55,7 +55,12 @@ Json said_of(const pipeline::FrameFacts& facts) {
 
 }  // namespace
 
-Result<Rows> level_speed(const LevelSpeedOptions& options) {
+/// What levels take on whole frames in memory, of held-out cloths (bench/accuracy/scenes.h).
+/// Rendering a megapixel takes up to a minute.
+/// s: wall time of one solve, the search for a lobe in it, which is lobe_s. ns_per_pixel: of s.
+/// ratio_to_unpack: of that to LibRaw's unpacking of four megapixels, as of accuracy_table(). said: of the
+/// lobe. stages, rounds: of `reference`, what its last solve took out, and how often light was traced.
+Result<Rows> level_speed(const AccuracyTableOptions& options) {
   const int threads = resolved_threads(options.threads);
   const Size size = bench_size(options.megapixels);
   const Result<Yardsticks> yardsticks = measure_yardsticks(threads);

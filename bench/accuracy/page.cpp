@@ -12,12 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "bench/accuracy/bound.h"
-#include "bench/accuracy/chain.h"
 #include "bench/accuracy/contenders.h"
 #include "bench/accuracy/coverage.h"
-#include "bench/accuracy/curves.h"
-#include "bench/accuracy/explain.h"
 #include "bench/accuracy/score.h"
 #include "core/files.h"
 #include "core/parallel.h"
@@ -286,6 +282,11 @@ AccuracyTableOptions levels_alone(AccuracyTableOptions options) {
   options.methods = level_names();
   return options;
 }
+AccuracyTableOptions unnamed(AccuracyTableOptions options) {
+  options.methods = {};
+  options.scene = "";
+  return options;
+}
 AccuracyTableOptions small(AccuracyTableOptions options) {
   options.quick = true;
   return options;
@@ -294,24 +295,12 @@ AccuracyTableOptions small(AccuracyTableOptions options) {
 constexpr std::array<FigurePart, 9> kParts = {
     {{"table", &AccuracyFigures::table, [](const auto& o) { return accuracy_table(o); }},
      {"coverage", &AccuracyFigures::coverage, [](const auto& o) { return coverage_table(o); }},
-     {"explain", &AccuracyFigures::explain,
-      [](const auto& o) {
-        return explain_table({o.set, o.seed, o.quick, o.threads});
-      }},
-     {"chain", &AccuracyFigures::chain,
-      [](const auto& o) {
-        ChainOptions options;
-        options.seed = o.seed;
-        options.threads = o.threads;
-        return chain_table(options);
-      }},
+     {"explain", &AccuracyFigures::explain, [](const auto& o) { return explain_table(o); }},
+     {"chain", &AccuracyFigures::chain, [](const auto& o) { return chain_table(unnamed(o)); }},
      {"leds", &AccuracyFigures::leds, [](const auto& o) { return accuracy_by_leds(levels_alone(o)); }},
      {"curves", &AccuracyFigures::curves, [](const auto& o) { return accuracy_curves(small(o)); }},
      {"gates", &AccuracyFigures::gates, [](const auto& o) { return accuracy_gates(small(o)); }},
-     {"bound", &AccuracyFigures::bound,
-      [](const auto& o) {
-        return accuracy_bound({{}, o.threads});
-      }},
+     {"bound", &AccuracyFigures::bound, [](const auto& o) { return accuracy_bound(unnamed(o)); }},
      {"specular", &AccuracyFigures::specular,
       [](const auto& o) { return specular_warnings(levels_alone(o)); }}}};
 

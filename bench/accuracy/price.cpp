@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/accuracy/price.h"
+#include "bench/accuracy/accuracy.h"
 
 #include <utility>
 
@@ -76,12 +76,15 @@ Result<void> add_rows(AccuracyScene scene, double megapixels, int threads, Rows&
 
 }  // namespace
 
-Result<Rows> price_table(const PriceTableOptions& options) {
+/// What `weft solve --explain` foretells of whole sessions, the demo and shot silk and two cloths of the set
+/// held out, against what the solves then give and take: a row for each scene, size and level, with degrees,
+/// the share of the cloth that they hold for, and seconds, each foretold and true, and their ratios.
+Result<Rows> price_table(const AccuracyTableOptions& options, const std::vector<double>& sizes) {
   const Result<std::vector<AccuracyScene>> scenes = priced_scenes(options.scenes);
   if (!scenes) return scenes.error();
   Rows rows;
   for (const AccuracyScene& scene : *scenes) {
-    for (const double megapixels : options.megapixels) {
+    for (const double megapixels : sizes) {
       if (Result<void> ok = add_rows(scene, megapixels, options.threads, rows); !ok)
         return std::move(ok).error();
     }

@@ -61,4 +61,17 @@ Result<Patch> with_lights(const Patch& patch, const std::vector<int>& numbers);
 /// The patches of a scene, several at once.
 Result<std::vector<Patch>> render_patches(const AccuracyScene& scene, int threads);
 
+/// A rig and the cloth on it, with what is not as it should be.
+struct ChainCase {
+  std::string name;  ///< "plain, blur 0.4 px"
+  simulator::Scene scene;
+  /// Else its reflectance is unknown when lights are calibrated: albedo is relative.
+  bool knows_paper = true;
+};
+
+/// The cases: weaves of the accuracy set, 12.5 pixels a yarn, over the rig of `rig` with its lens, its dark
+/// corners and its uneven, bent sensor, and one thing more in each. `rig` is testdata/scenes/rig.toml, made
+/// smaller: 0.8 megapixels of 200 mm. Other seeds draw other weaves and other noise. Errors: as read_scene.
+Result<std::vector<ChainCase>> chain_cases(const std::filesystem::path& rig, std::uint32_t seed);
+
 }  // namespace weft::bench

@@ -13,7 +13,7 @@
 #include "app/jobs/batch/plan_file.h"
 #include "bench/batch/archive.h"
 #include "bench/batch/farm_simulation.h"
-#include "bench/batch/parts.h"
+#include "bench/batch/studies.h"
 #include "core/parallel.h"
 #include "core/process.h"
 #include "core/temporary_folder.h"
@@ -91,14 +91,13 @@ Json row_of(const std::string& name, const FarmModel& model, const FarmOutcome& 
 }
 
 // The same tasks here and in the simulation, which knows the seconds of the first few alone.
-Result<Json> held_against_real(const BatchBenchOptions& options) {
-  const int sessions = options.sessions > 0 ? options.sessions : 200;
+Result<Json> held_against_real(const StudyOptions& options) {
+  const int sessions = options.runs;
   const int at_once = resolved_threads(options.threads);
   const TemporaryFolder folder;
   const fs::path archive = folder.path() / "archive", plan = folder.path() / "plan.jsonl",
                  log = folder.path() / "log";
-  const double megapixels = options.megapixels > 0 ? options.megapixels : 0.05;
-  if (Result<void> made = make_archive(archive, options.scene, megapixels, sessions, 4); !made)
+  if (Result<void> made = make_archive(archive, options.scene, options.megapixels, sessions, 4); !made)
     return std::move(made).error();
   const Result<int> planned = run_program({"batch", "plan", archive.string(), "-o", plan.string(), "--sample",
                                            "1", "--task-minutes", "0.001", "-q"},
@@ -180,7 +179,7 @@ std::vector<std::pair<std::string, FarmModel>> farms() {
 
 }  // namespace
 
-Result<Rows> batch_farm(const BatchBenchOptions& options) {
+Result<Rows> batch_farm(const StudyOptions& options) {
   Result<Json> real = held_against_real(options);
   if (!real) return std::move(real).error();
   Rows rows = {std::move(*real)};

@@ -7,7 +7,7 @@
 
 #include "app/jobs/batch/merge_batch.h"
 #include "bench/batch/archive.h"
-#include "bench/batch/parts.h"
+#include "bench/batch/studies.h"
 #include "core/files.h"
 #include "core/process.h"
 #include "core/solve.h"
@@ -53,18 +53,17 @@ int half_made_in(const fs::path& archive) {
 
 }  // namespace
 
-Result<Rows> batch_kills(const BatchBenchOptions& options) {
-  const int sessions = options.sessions > 0 ? options.sessions : 400;
+Result<Rows> batch_kills(const StudyOptions& options, int kills) {
+  const int sessions = options.runs;
   const TemporaryFolder folder;
   const fs::path archive = folder.path() / "archive", plan = folder.path() / "plan.jsonl",
                  log = folder.path() / "log";
-  const double megapixels = options.megapixels > 0 ? options.megapixels : 0.05;
-  if (Result<void> made = make_archive(archive, options.scene, megapixels, sessions, 4); !made)
+  if (Result<void> made = make_archive(archive, options.scene, options.megapixels, sessions, 4); !made)
     return made.error();
   const Result<int> planned =
       run_program({"batch", "plan", archive.string(), "-o", plan.string(), "--sample", "1", "-q"}, log);
   if (!planned) return planned.error();
-  const Result<Killed> killed = run_and_kill(plan, log, options.kills);
+  const Result<Killed> killed = run_and_kill(plan, log, kills);
   if (!killed) return killed.error();
   const int half_made = half_made_in(archive);
   const Result<app::MergeReport> merged = app::merge_batch(plan, {});

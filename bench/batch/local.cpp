@@ -5,7 +5,7 @@
 
 #include "app/jobs/solve.h"
 #include "bench/batch/archive.h"
-#include "bench/batch/parts.h"
+#include "bench/batch/studies.h"
 #include "core/files.h"
 #include "core/job.h"
 #include "core/parallel.h"
@@ -31,14 +31,13 @@ Result<double> solve_in_turn(const fs::path& archive, const fs::path& output, in
 
 }  // namespace
 
-Result<Rows> batch_local(const BatchBenchOptions& options) {
-  const int sessions = options.sessions > 0 ? options.sessions : 200;
-  const double megapixels = options.megapixels > 0 ? options.megapixels : 1;
+Result<Rows> batch_local(const StudyOptions& options, int jobs) {
+  const int sessions = options.runs;
   const int threads = resolved_threads(options.threads);
   const TemporaryFolder folder;
   const fs::path archive = folder.path() / "archive", log = folder.path() / "log",
                  plan = folder.path() / "plan.jsonl";
-  if (Result<void> made = make_archive(archive, options.scene, megapixels, sessions, 4); !made)
+  if (Result<void> made = make_archive(archive, options.scene, options.megapixels, sessions, 4); !made)
     return made.error();
   const Result<double> in_turn = solve_in_turn(archive, folder.path() / "in-turn", sessions, threads);
   if (!in_turn) return in_turn.error();
@@ -55,15 +54,15 @@ Result<Rows> batch_local(const BatchBenchOptions& options) {
   const Json planned = Json::parse(*read_text(log), nullptr, false);
   Stopwatch watch;
   code = run_program(
-      {"batch", "run", plan.string(), "-q", "--jobs", std::to_string(options.jobs), "--threads", cores}, log);
+      {"batch", "run", plan.string(), "-q", "--jobs", std::to_string(jobs), "--threads", cores}, log);
   const double batch_s = watch.lap();
   if (!code) return code.error();
   if (*code != 0) return ended_with("run", *code, log);
   const double predicted_s = 3600 * planned["hours"].get<double>();
   return Rows{{{"sessions", sessions},
-               {"megapixels", megapixels},
+               {"megapixels", options.megapixels},
                {"threads", threads},
-               {"jobs", options.jobs},
+               {"jobs", jobs},
                {"in_turn_s", *in_turn},
                {"batch_s", batch_s},
                {"ratio", batch_s / *in_turn},

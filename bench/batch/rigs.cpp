@@ -10,7 +10,7 @@
 #include "app/jobs/batch/batch_page.h"
 #include "app/jobs/batch/merge_batch.h"
 #include "bench/batch/archive.h"
-#include "bench/batch/parts.h"
+#include "bench/batch/studies.h"
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/json_document.h"
@@ -23,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kOfThreeRigs = 40;
 constexpr double kMmPerPixel = 0.04;
 constexpr std::size_t kWrong = 1;  // of rigs(): its calibration
 constexpr std::array<double, 5> kMoved_mm = {0, 5, 10, 20, 40};
@@ -133,12 +132,11 @@ Json row_of(double moved_mm, const app::BatchState& state) {
 
 }  // namespace
 
-Result<Rows> batch_rigs(const BatchBenchOptions& options) {
+Result<Rows> batch_rigs(const StudyOptions& options) {
   const TemporaryFolder folder;
   const fs::path archive = folder.path() / "archive";
   const Result<Calibration> right =
-      simulate_rigs(archive, options.scene.parent_path(), options.megapixels > 0 ? options.megapixels : 1,
-                    options.sessions > 0 ? options.sessions : kOfThreeRigs);
+      simulate_rigs(archive, options.scene.parent_path(), options.megapixels, options.runs);
   if (!right) return right.error();
   Rows rows;
   for (const double moved_mm : kMoved_mm) {

@@ -9,7 +9,7 @@
 #include "batch/outcome.h"
 #include "batch/plan.h"
 #include "bench/batch/archive.h"
-#include "bench/batch/parts.h"
+#include "bench/batch/studies.h"
 #include "core/files.h"
 #include "core/job.h"
 #include "core/temporary_folder.h"
@@ -19,12 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSessions = 10'000, kOwn = 10, kSample = 10;
-constexpr double kMegapixels = 0.05;
-
-int sessions_of(const BatchBenchOptions& options) {
-  return options.sessions > 0 ? options.sessions : kSessions;
-}
+constexpr int kOwn = 10, kSample = 10;
 
 batch::Outcome outcome_of(const batch::Plan& plan, const batch::Job& job, int number) {
   batch::Outcome outcome;
@@ -48,12 +43,11 @@ batch::Outcome outcome_of(const batch::Plan& plan, const batch::Job& job, int nu
 
 }  // namespace
 
-Result<Rows> batch_plan(const BatchBenchOptions& options) {
-  const int sessions = sessions_of(options);
+Result<Rows> batch_plan(const StudyOptions& options) {
+  const int sessions = options.runs;
   const TemporaryFolder folder;
   const fs::path archive = folder.path() / "archive", log = folder.path() / "log";
-  const double megapixels = options.megapixels > 0 ? options.megapixels : kMegapixels;
-  if (Result<void> made = make_archive(archive, options.scene, megapixels, sessions, kOwn); !made)
+  if (Result<void> made = make_archive(archive, options.scene, options.megapixels, sessions, kOwn); !made)
     return made.error();
   Stopwatch watch;
   const Result<int> code = run_program(
@@ -76,8 +70,8 @@ Result<Rows> batch_plan(const BatchBenchOptions& options) {
                {"sample_s", sample_s}}};
 }
 
-Result<Rows> batch_merge(const BatchBenchOptions& options) {
-  const int sessions = sessions_of(options);
+Result<Rows> batch_merge(const StudyOptions& options) {
+  const int sessions = options.runs;
   const TemporaryFolder folder;
   const fs::path archive = folder.path() / "archive", file = folder.path() / "plan.jsonl",
                  log = folder.path() / "log";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/calibration/color.h"
+#include "bench/calibration/studies.h"
 
 #include <fmt/format.h>
 
@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 using simulator::Spectrum;
 
 constexpr double kCiede2000Bar = 1;
+constexpr const char* kSpectra = "testdata/spectra";  // tables of LED, filters, chart and dyes
 
 struct Spectra {
   Spectrum led;
@@ -138,8 +139,14 @@ Result<double> off_dyes(const Spectra& spectra, const ColorTransform& transform)
 
 }  // namespace
 
-Result<Rows> calibration_color_table(const CalibrationColorBenchOptions& options) {
-  const Result<Spectra> spectra = read_all(options.spectra);
+/// `weft calibrate color` on the simulated 24-patch chart through spectral filters and noise: as a session
+/// that is solved, and as one photograph under one LED, by matrix and by the curve in xyY. `vora` is how much
+/// of the observer's space the filters span, trace(P P') / 3 of the projections on both (Vora and Trussell
+/// 1993); `vora_lit` the same with the LED behind the filters and daylight behind the observer. Then
+/// CIEDE2000, mean over patches: of the camera's own colours, fitted, of held-out patches (each by the fit to
+/// all others; `bar` is asked for), and of the cloth dyes of the folder, which no fit has seen.
+Result<Rows> calibration_color_table(const StudyOptions& options) {
+  const Result<Spectra> spectra = read_all(kSpectra);
   if (!spectra) return spectra.error();
   const Result<Vora> span = vora_of(*spectra);
   if (!span) return span.error();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/calibration/degenerate.h"
+#include "bench/calibration/studies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -184,14 +184,22 @@ Json row_of(const DegenerateCase& c, const std::vector<std::optional<Outcome>>& 
 
 }  // namespace
 
-Result<Rows> calibration_degenerate_table(const CalibrationDegenerateBenchOptions& options) {
-  if (options.seeds < 1 || options.seeds > 1000) {
+/// Captures that cannot say what is asked of them: all tilts under 2 degrees, a board or sheet seen edge-on,
+/// a LED on the optical axis, one pose taken again and again, one sheet or board, the sum of 100 megapixels.
+/// A row a case and kind ("lights": positions of LEDs, "camera": focal lengths and principal point, "sum":
+/// the mean of white paper by channel), made by formulas of their own (bench/oracles/paper_oracle.h,
+/// bench/oracles/board_views.h): in how many of `seeds` it is `refused` (by an error or as a misfit), and of
+/// those accepted the predicted sigma (rms, in `unit`), the error over it (rms and worst) and the least and
+/// most chi-square a degree of freedom, where the fit has one. The camera's is of the corners' noise that was
+/// put in.
+Result<Rows> calibration_degenerate_table(const StudyOptions& options) {
+  if (options.runs < 1 || options.runs > 1000) {
     return Error{ErrorKind::kUsage, "number of seeds is out of its range", "seeds", "it is 1 to 1000",
                  "give a number in that range"};
   }
   Rows rows;
   for (const DegenerateCase& c : all_cases()) {
-    std::vector<std::optional<Outcome>> outcomes(static_cast<std::size_t>(options.seeds));
+    std::vector<std::optional<Outcome>> outcomes(static_cast<std::size_t>(options.runs));
     parallel_for(outcomes.size(), options.threads,
                  [&](std::size_t i, int) { outcomes[i] = c.run(static_cast<int>(i) + 1); });
     rows.push_back(row_of(c, outcomes));

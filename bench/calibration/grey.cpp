@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/calibration/grey.h"
+#include "bench/calibration/studies.h"
 
 #include <fmt/format.h>
 
@@ -34,8 +34,8 @@ struct Score {
 };
 
 std::vector<GreyChartFit> fits_of(const PaperRig& rig, const CameraModel& camera, const NearLights& lights,
-                                  const CalibrationGreyBenchOptions& options, double bend) {
-  std::vector<GreyChartFit> fits(static_cast<std::size_t>(options.seeds));
+                                  const StudyOptions& options, double bend) {
+  std::vector<GreyChartFit> fits(static_cast<std::size_t>(options.runs));
   parallel_for(fits.size(), options.threads, [&](std::size_t i, int) {
     GreyErrors errors;
     errors.seed = i + 1;
@@ -106,8 +106,15 @@ void add_bend(Rows& rows, const PaperRig& rig, const std::vector<GreyChartFit>& 
 
 }  // namespace
 
-Result<Rows> calibration_grey_table(const CalibrationGreyBenchOptions& options) {
-  if (options.seeds < 1 || options.seeds > 10000) {
+/// Fluxes and white balances of ten LEDs from a chart of the nine greys of the Munsell scale, made by
+/// formulas of their own (bench/oracles/grey_oracle.h). A row a case and quantity: "flux" and "balance"
+/// (percent), with LEDs at their true places against the truth, and with LEDs as five poses of white paper
+/// found them against what the paper found; then "bend" (percent of the light at full scale) of a response
+/// bent by 0 to 100 percent. `rms_error` (of a bend: its mean), the `sigma` that the fit predicts, the
+/// Cramer-Rao bound, `error_over_sigma`, the `bar` asked for; for bends `free_parabola`: what
+/// calibration::check_scale leaves of it, percent rms.
+Result<Rows> calibration_grey_table(const StudyOptions& options) {
+  if (options.runs < 1 || options.runs > 10000) {
     return Error{ErrorKind::kUsage, "number of seeds is out of its range", "seeds", "it is 1 to 10000",
                  "give a number in that range"};
   }

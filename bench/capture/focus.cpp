@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/capture/focus.h"
+#include "bench/capture/studies.h"
 
 #include <algorithm>
 #include <array>
@@ -17,6 +17,7 @@ namespace {
 constexpr std::array kCloths = {"smooth", "plain", "twill", "satin", "deep"};
 constexpr std::array kBlurs_px = {0.0, 2.0, 4.0, 8.0};
 constexpr double kFinest_px = 2;  // the simulator's disc is of whole pixels: a smaller one is none
+constexpr int kRepeats = 20;      // photographs of each blur
 constexpr int kWidth = 480, kHeight = 360;
 
 struct Scores {
@@ -53,7 +54,13 @@ Scores scores_of(const simulator::Scene& scene, int repeats) {
 
 }  // namespace
 
-Result<Rows> capture_focus_table(const FocusOptions& options) {
+/// How well the focus score tells blur. A row a cloth and diameter of the disc that blurs it, in raw pixels:
+/// "score" (mean of the repeats), "drop" (percent of the score in focus), "sigmas" (that drop over the
+/// standard deviation of a photograph's score), and for two pixels across "just_told_px", the diameter whose
+/// drop is one sigma, the score falling with its square. By one LED; the lens's own spread is in all of them.
+/// Errors: those of read_scene().
+Result<Rows> capture_focus_table(const StudyOptions& options) {
+  const int repeats = options.runs > 1 ? options.runs : kRepeats;
   Rows rows;
   int done = 0;
   for (const char* cloth : kCloths) {
@@ -61,7 +68,7 @@ Result<Rows> capture_focus_table(const FocusOptions& options) {
     if (!scene) return std::move(scene).error();
     Scores sharp;
     for (const double blur_px : kBlurs_px) {
-      const Scores scores = scores_of(cut(*scene, blur_px), options.repeats);
+      const Scores scores = scores_of(cut(*scene, blur_px), repeats);
       if (blur_px == 0) sharp = scores;
       const double drop = 1 - scores.mean / sharp.mean;
       const double sigmas = drop * sharp.mean / sharp.sigma;

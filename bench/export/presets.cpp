@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/export/presets.h"
+#include "bench/export/studies.h"
 
 #include <filesystem>
 #include <string>
@@ -25,7 +25,7 @@ struct TileMaps {
   fs::path folder() const { return temporary.path() / "maps"; }
 };
 
-Result<void> make_tile(const ExportBenchOptions& options, const TileMaps& tile) {
+Result<void> make_tile(const StudyOptions& options, const TileMaps& tile) {
   const Result<SolvedCloth> cloth = solved_cloth(options.scene, kTile, options.threads);
   if (!cloth) return cloth.error();
   fs::create_directories(tile.folder());
@@ -42,7 +42,7 @@ double megabytes_of(const Json& document) {
   return bytes * 1e-6;
 }
 
-Result<Json> measure_presets(const ExportBenchOptions& options, const TileMaps& tile, const std::string& name,
+Result<Json> measure_presets(const StudyOptions& options, const TileMaps& tile, const std::string& name,
                              const std::vector<std::string>& presets) {
   app::ExportOptions asked = {.input = tile.folder()};
   asked.presets = presets;
@@ -65,7 +65,9 @@ Result<Json> measure_presets(const ExportBenchOptions& options, const TileMaps& 
 
 }  // namespace
 
-Result<Rows> export_presets(const ExportBenchOptions& options) {
+/// Each preset of weft's own on a tile of 2048 x 2048: files, megabytes and wall seconds, and the same of all
+/// at once, where files that are alike are encoded once. Errors of the scene and of export_maps().
+Result<Rows> export_presets(const StudyOptions& options) {
   const TileMaps tile;
   if (Result<void> ok = make_tile(options, tile); !ok) return std::move(ok).error();
   Rows rows;
@@ -82,7 +84,9 @@ Result<Rows> export_presets(const ExportBenchOptions& options) {
   return rows;
 }
 
-Result<Rows> export_losses(const ExportBenchOptions& options) {
+/// What normals and albedo of the scene lose in every format: degrees and decibels, with megabytes and
+/// seconds of 4 megapixels by one thread.
+Result<Rows> export_losses(const StudyOptions& options) {
   const TileMaps tile;
   if (Result<void> ok = make_tile(options, tile); !ok) return std::move(ok).error();
   app::ExportOptions asked = {.input = tile.folder()};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/maps/detail.h"
+#include "bench/maps/studies.h"
 
 #include <algorithm>
 #include <array>
@@ -106,7 +106,9 @@ Json join_row(double base, double detail) {
 
 }  // namespace
 
-Result<Rows> maps_detail(const MapsBenchOptions& options) {
+/// Normals of a detail layer joined with those of a tilted base: mean degrees to the normals of summed
+/// heights, and to the detail turned onto the base normal. A row each tilt, weave and blend.
+Result<Rows> maps_detail(const StudyOptions& options) {
   Rows rows;
   for (const NormalSquare& cloth : page_weaves(options.threads)) {
     if (cloth.name == "satin") continue;
@@ -120,7 +122,9 @@ Result<Rows> maps_detail(const MapsBenchOptions& options) {
   return rows;
 }
 
-Result<Rows> maps_gloss(const MapsBenchOptions& options) {
+/// Facets of one alpha on facets of another: the single alpha that reflects most like it, and what each rule
+/// of joining says, with its relative rms.
+Result<Rows> maps_gloss(const StudyOptions& options) {
   struct AlphaPair {
     double base, detail;
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/maps/flatten.h"
+#include "bench/maps/studies.h"
 
 #include <array>
 #include <cmath>
@@ -149,7 +149,11 @@ std::vector<Way> ways(Size size, int threads) {
 
 }  // namespace
 
-Result<Rows> maps_flatten(const MapsBenchOptions& options) {
+/// What each way of flattening leaves of a slow error of 1.5 degrees, a cubic one and one of seventh degree
+/// in the corners, and what it takes from the same cloth without one, on a plain weave of 10 pixels a yarn,
+/// turned by 1.3 degrees, whose yarns stand off their places by 4 percent of their pitch (rms). Frames of 512
+/// x 512 and 1536 x 1024 pixels, rms in degrees.
+Result<Rows> maps_flatten(const StudyOptions& options) {
   Rows rows;
   const WanderingWeave weave;
   for (const Size size : {Size{512, 512}, {1536, 1024}}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/maps/opacity.h"
+#include "bench/maps/studies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,9 @@ MapError error_against(const Image<float>& truth, const std::function<double(int
 
 }  // namespace
 
-Result<Rows> maps_opacity(const MapsBenchOptions& options) {
+/// Opacity of rendered mesh and lace over a light: rms and mean error of 1 - T, and of what is found. `way`
+/// says whether it was found; where it was not, both are the same.
+Result<Rows> maps_opacity(const StudyOptions& options) {
   Rows rows;
   for (const NamedMesh& mesh : meshes()) {
     const RenderedMesh seen = rendered(mesh.scene);

@@ -4,21 +4,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
 
-#include "app/cli/options.h"
-#include "bench/accuracy/bound.h"
-#include "bench/accuracy/chain.h"
 #include "bench/accuracy/coverage.h"
-#include "bench/accuracy/gloss.h"
-#include "bench/accuracy/levels.h"
 #include "bench/accuracy/page.h"
-#include "bench/program/rows.h"
+#include "bench/accuracy/photos.h"
+#include "bench/program/studies.h"
 #include "bench/program/verbs.h"
-#include "core/process.h"
 
 namespace weft::bench {
 namespace {
@@ -26,76 +23,78 @@ namespace {
 struct AccuracyArguments {
   AccuracyTableOptions table;
   std::string set = "held-out";
-  bool bound = false;
-  bool leds = false;
-  bool specular = false;
-  bool sigma = false;
-  bool chain = false;
-  bool gloss = false;
   double megapixels = 0;  ///< of whole frames; 0: not these
   std::vector<std::string> parts;
   std::filesystem::path docs;  ///< folder with accuracy.md; empty: no page
+
+  AccuracyTableOptions with(const StudyOptions& options) const {
+    AccuracyTableOptions all = table;
+    all.set = set == "tuning" ? SceneSet::kTuning : SceneSet::kHeldOut;
+    all.threads = options.threads;
+    return all;
+  }
 };
 
-Result<Rows> measure(const AccuracyArguments& a, int threads) {
-  AccuracyTableOptions options = a.table;
-  options.set = a.set == "tuning" ? SceneSet::kTuning : SceneSet::kHeldOut;
-  options.threads = threads;
-  if (a.bound) return accuracy_bound({options.methods, threads});
-  if (a.leds) return accuracy_by_leds(options);
-  if (a.specular) return specular_warnings(options);
-  if (a.sigma) return coverage_table(options);
-  if (a.gloss)
-    return gloss_table(
-        {.set = options.set, .cloth = options.scene, .seed = options.seed, .threads = threads});
-  if (a.chain)
-    return chain_table(
-        {.name = options.scene, .levels = options.methods, .seed = options.seed, .threads = threads});
-  if (a.megapixels > 0) return level_speed({a.megapixels, options.scene, options.methods, threads});
-  if (a.docs.empty()) return accuracy_table(options);
+app::Option add_set(app::Options& options, std::string& set, const char* help) {
+  return options.add("--set", &set, help).one_of({"tuning", "held-out"}).shows_default();
+}
+
+Result<Rows> measure_for_docs(const AccuracyArguments& a, const StudyOptions& options) {
   AccuracyFigures figures;
   if (!a.parts.empty()) {
     Result<AccuracyFigures> before = read_accuracy_docs(a.docs);
     if (!before) return std::move(before).error();
     figures = std::move(*before);
   }
-  const auto measured = measure_figures({options, a.parts, program_beside("weft")}, figures);
+  const auto measured = measure_figures({a.with(options), a.parts, options.programs / "weft"}, figures);
   if (!measured) return measured.error();
   if (Result<void> written = write_accuracy_docs(a.docs, figures); !written)
     return std::move(written).error();
   return std::move(figures.table);
 }
 
+Result<Rows> measure_table(const AccuracyArguments& a, const StudyOptions& options) {
+  if (!a.docs.empty()) return measure_for_docs(a, options);
+  AccuracyTableOptions table = a.with(options);
+  if (a.megapixels == 0) return accuracy_table(table);
+  table.megapixels = a.megapixels;
+  return level_speed(table);
+}
+
 app::Run add_accuracy(app::Options& options) {
   const auto a = std::make_shared<AccuracyArguments>();
   options.add_flag("--quick", &a->table.quick, "One small patch a scene, no yardsticks");
-  options.add("--set", &a->set, "Scenes: those that methods are tuned on, or those held out")
-      .one_of({"tuning", "held-out"})
-      .shows_default();
+  add_set(options, a->set, "Scenes: those that methods are tuned on, or those held out");
   options.add("--scene", &a->table.scene, "One scene alone, such as \"deep satin\"");
   options.add("--method", &a->table.methods, "These levels and methods alone: fast,least-squares")
       .by_commas();
-  const std::vector<app::Option> instead = {
-      options.add_flag("--bound", &a->bound,
-                       "Instead: scatter against the Cramer-Rao bound, and whether sigma is honest"),
-      options.add_flag("--leds", &a->leds, "Instead: from three to ten LEDs"),
-      options.add_flag("--specular", &a->specular,
-                       "Instead: who says SPECULAR on 30 dark satins and 90 other cloths"),
-      options.add_flag("--sigma", &a->sigma,
-                       "Instead: whether errors on cloth are as large as sigma says, at every level"),
-      options.add_flag("--gloss", &a->gloss,
-                       "Instead: the lobe of glossy cloths, found and solved with; --scene is a cloth of it"),
-      options.add_flag("--chain", &a->chain,
-                       "Instead: whole sessions by the product's own steps, from captures to maps"),
-      options
-          .add("--megapixels", &a->megapixels,
-               "Instead: what levels take on frames of so many million pixels, held in memory")
-          .in_range(0.3, 200.0),
+  const auto of = [a](Result<Rows> (*table)(const AccuracyTableOptions&)) {
+    return [a, table](const StudyOptions& o) { return table(a->with(o)); };
+  };
+  std::vector<app::Option> instead;
+  const Choice choice = by_flag(
+      options,
+      {{"table", "", [a](const StudyOptions& o) { return measure_table(*a, o); }},
+       {"bound", "Instead: scatter against the Cramer-Rao bound, and whether sigma is honest",
+        of(accuracy_bound)},
+       {"leds", "Instead: from three to ten LEDs", of(accuracy_by_leds)},
+       {"specular", "Instead: who says SPECULAR on 30 dark satins and 90 other cloths",
+        of(specular_warnings)},
+       {"sigma", "Instead: whether errors on cloth are as large as sigma says, at every level",
+        of(coverage_table)},
+       {"gloss", "Instead: the lobe of glossy cloths, found and solved with; --scene is a cloth of it",
+        of(gloss_table)},
+       {"chain", "Instead: whole sessions by the product's own steps, from captures to maps",
+        of(chain_table)}},
+      &instead);
+  instead.push_back(options
+                        .add("--megapixels", &a->megapixels,
+                             "Instead: what levels take on frames of so many million pixels, held in memory")
+                        .in_range(0.3, 200.0));
+  instead.push_back(
       options.add("--docs", &a->docs,
-                  "All of it, into this folder: the figures of accuracy.md, its plots, accuracy.json")};
-  for (std::size_t i = 0; i < instead.size(); ++i) {
-    for (std::size_t j = i + 1; j < instead.size(); ++j) instead[i].excludes(instead[j]);
-  }
+                  "All of it, into this folder: the figures of accuracy.md, its plots, accuracy.json"));
+  exclude_each_other(instead);
   options.add("--seed", &a->table.seed, "Of weaves and noise, from 1").shows_default();
   options
       .add("--part", &a->parts,
@@ -103,13 +102,62 @@ app::Run add_accuracy(app::Options& options) {
                        fmt::join(figure_parts(), ",")))
       .by_commas()
       .needs(instead.back());
-  return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.threads), common); };
+  return run_of(choice);
+}
+
+app::Run add_explain(app::Options& options) {
+  struct Said : AccuracyArguments {
+    std::vector<double> sizes = {1, 8};
+    bool whole = false;
+  };
+  const auto said = std::make_shared<Said>();
+  options.add_flag("--quick", &said->table.quick, "One small patch a scene, and no whole session");
+  options.add_flag("--whole", &said->whole, "Whole sessions alone, whose seconds are foretold too");
+  add_set(options, said->set, "Scenes: those that the prediction is fitted to, or those held out");
+  options.add("--megapixels", &said->sizes, "Sizes of the whole sessions that are priced; default 1,8")
+      .by_commas()
+      .above_zero();
+  options.add("--scenes", &said->table.scenes, "Folder of their scenes").shows_default();
+  return run_of(by_flag(options, {{"explain", "", [said](const StudyOptions& o) -> Result<Rows> {
+                                     const AccuracyTableOptions table = said->with(o);
+                                     Result<Rows> rows =
+                                         table.quick ? Rows() : price_table(table, said->sizes);
+                                     if (!rows || said->whole) return rows;
+                                     Result<Rows> patches = explain_table(table);
+                                     if (!patches) return patches;
+                                     std::ranges::move(*patches, std::back_inserter(*rows));
+                                     return rows;
+                                   }}}));
+}
+
+app::Run add_photos(app::Options& options) {
+  const auto a = std::make_shared<PhotosOptions>();
+  options.add("folder", &a->folder, "Photographs in the layout of the DiLiGenT benchmark, with normal_gt.exr")
+      .required();
+  options.add("--pick", &a->pick, "Well-spread lights a subset; 0 is all of them")
+      .not_negative()
+      .shows_default();
+  options.add("--subsets", &a->subsets, "Subsets to average over").in_range(1, 10000).shows_default();
+  options.add("--seed", &a->seed, "Of the subsets").shows_default();
+  options.add("--method", &a->methods, "These levels and methods alone: fast,least-squares").by_commas();
+  return run_of(by_flag(options, {{"photos", "", [a](const StudyOptions& o) {
+                                     a->threads = o.threads;
+                                     return photos_table(*a);
+                                   }}}));
 }
 
 }  // namespace
 
 app::Verb accuracy_verb() {
   return {"accuracy", "What each level and method gets right, and its price", add_accuracy};
+}
+
+app::Verb explain_verb() {
+  return {"explain", "Errors and seconds that solve --explain foretells against true ones", add_explain};
+}
+
+app::Verb photos_verb() {
+  return {"photos", "Errors on real photographs under known distant lights", add_photos};
 }
 
 }  // namespace weft::bench

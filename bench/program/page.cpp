@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/options.h"
-#include "app/cli/terminal.h"
-#include "bench/program/rows.h"
+#include "bench/program/studies.h"
 #include "bench/program/verbs.h"
 #include "bench/server/wide_solve.h"
 #include "core/files.h"
@@ -28,13 +26,12 @@ struct PageArguments {
 };
 
 /// A browser looks at a solve of each size, and at the desk of a virtual rig.
-Result<Rows> measure(const PageArguments& a, bool quiet) {
+Result<Rows> measure(const PageArguments& a, const StudyOptions& options) {
   if (!is_there(kScript)) {
     return Error{ErrorKind::kNoInput, "the page cannot be measured here", kScript,
                  "the scripts for the browser are not in this folder",
                  "run it in a clone of weft: ./dev bench page"};
   }
-  app::ProgressLine line(quiet);
   const TemporaryFolder scratch;
   std::vector<std::string> command = {"/usr/bin/env", "node", kScript};
   for (const int megapixels : a.megapixels) {
@@ -43,12 +40,11 @@ Result<Rows> measure(const PageArguments& a, bool quiet) {
       return std::move(ok).error();
     command.push_back(sessions.string());
   }
-  line.update("browser", 0);
+  options.progress(0, 1);
   const fs::path said = scratch.path() / "rows.json";
-  const auto browser = ChildProcess::start(command,
-                                           {"WEFT_PROGRAMS=" + program_beside("weft").parent_path().string(),
-                                            "WEFT_MINUTES=" + std::to_string(a.minutes)},
-                                           said);
+  const auto browser = ChildProcess::start(
+      command, {"WEFT_PROGRAMS=" + options.programs.string(), "WEFT_MINUTES=" + std::to_string(a.minutes)},
+      said);
   if (!browser) return browser.error();
   const std::optional<int> code =
       (*browser)->wait(kPatience_s + 60.0 * a.minutes * static_cast<double>(a.megapixels.size()));
@@ -68,7 +64,8 @@ app::Run add_page(app::Options& options) {
   options.add("--minutes", &a->minutes, "Also pan over each of them for so long: memory by the minute")
       .in_range(0, 600)
       .shows_default();
-  return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.quiet), common); };
+  return run_of(
+      by_flag(options, {{"browser", "", [a](const StudyOptions& asked) { return measure(*a, asked); }}}));
 }
 
 }  // namespace

@@ -66,11 +66,11 @@ void ask_for_much(int port, Descriptor& reader) {
 
 }  // namespace
 
-void Crowd::send_malformed(int requests, std::uint64_t seed) {
+void Crowd::send_malformed(std::uint64_t seed) {
   sending_ = true;
-  threads_.emplace_back([this, requests, seed](const std::stop_token& stop) {
+  threads_.emplace_back([this, seed](const std::stop_token& stop) {
     std::mt19937 random(static_cast<std::mt19937::result_type>(seed));
-    for (int i = 0; i < requests && !stop.stop_requested(); ++i) {
+    for (int i = 0; i < kMalformed && !stop.stop_requested(); ++i) {
       if (const Result<Descriptor> client = connected_to(port_)) {
         say(*client, malformed_request(random, port_));
         hear_to_the_end(*client);
@@ -80,8 +80,8 @@ void Crowd::send_malformed(int requests, std::uint64_t seed) {
   });
 }
 
-Result<void> Crowd::stay_silent(int clients) {
-  for (int i = 0; i < clients; ++i) {
+Result<void> Crowd::stay_silent() {
+  for (int i = 0; i < kSilent; ++i) {
     Result<Descriptor> one = connected_to(port_);
     if (!one) return std::move(one).error();
     if (i % 2 == 1) say(*one, "POST /api/v1/scan HTTP/1.1\r\nContent-Le");
@@ -90,9 +90,9 @@ Result<void> Crowd::stay_silent(int clients) {
   return {};
 }
 
-void Crowd::read_slowly(int clients) {
-  threads_.emplace_back([this, clients](const std::stop_token& stop) {
-    std::vector<Descriptor> readers(static_cast<std::size_t>(clients));
+void Crowd::read_slowly() {
+  threads_.emplace_back([this](const std::stop_token& stop) {
+    std::vector<Descriptor> readers(kSlow);
     std::array<char, 2048> block = {};
     while (!stop.stop_requested()) {
       for (Descriptor& reader : readers) {

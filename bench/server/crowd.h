@@ -16,15 +16,17 @@ class Crowd {
  public:
   explicit Crowd(int port) : port_(port) {}
 
-  /// So many malformed requests one after another, drawn by `seed`.
-  void send_malformed(int requests, std::uint64_t seed);
+  static constexpr int kMalformed = 1000, kSilent = 64, kSlow = 32;
+
+  /// Malformed requests one after another, drawn by `seed`.
+  void send_malformed(std::uint64_t seed);
   bool sending() const { return sending_; }
-  /// So many who say nothing, every second one of them in the middle of its request. kTryAgain where one
+  /// Who say nothing, every second one of them in the middle of its request. kTryAgain where one
   /// cannot connect.
-  Result<void> stay_silent(int clients);
-  /// So many who ask for openapi.json twenty times at once and take 40 kB a second of it. Who is dropped
+  Result<void> stay_silent();
+  /// Who ask for openapi.json twenty times at once and take 40 kB a second of it. Who is dropped
   /// comes back.
-  void read_slowly(int clients);
+  void read_slowly();
 
  private:
   const int port_;

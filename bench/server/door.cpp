@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/server/door.h"
+#include "bench/server/studies.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "app/server/http/client.h"
-#include "app/server/rig_server.h"
 #include "bench/server/crowd.h"
+#include "bench/server/no_devices.h"
 #include "core/statistics.h"
 #include "core/temporary_folder.h"
 
@@ -22,25 +22,25 @@ struct Beside {
 };
 
 Result<Json> row_of(const app::RigClient& client, int port, const Beside& beside,
-                    const DoorOptions& options) {
+                    const StudyOptions& options) {
   Crowd crowd(port);
   if (beside.silent) {
-    if (Result<void> there = crowd.stay_silent(options.silent); !there) return std::move(there).error();
+    if (Result<void> there = crowd.stay_silent(); !there) return std::move(there).error();
   }
-  if (beside.slow) crowd.read_slowly(options.slow);
+  if (beside.slow) crowd.read_slowly();
   if (beside.slow) std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  if (beside.malformed) crowd.send_malformed(options.malformed, options.seed);
+  if (beside.malformed) crowd.send_malformed(options.seed);
   std::vector<double> times_ms;
-  while (static_cast<int>(times_ms.size()) < options.requests || crowd.sending()) {
+  while (static_cast<int>(times_ms.size()) < options.runs || crowd.sending()) {
     const auto begin = std::chrono::steady_clock::now();
     const Result<Json> answer = client.get("/api/v1/rig");
     const std::chrono::duration<double, std::milli> time_ms = std::chrono::steady_clock::now() - begin;
     if (!answer) return answer.error();
     times_ms.push_back(time_ms.count());
   }
-  return Json{{"malformed", beside.malformed ? options.malformed : 0},
-              {"silent", beside.silent ? options.silent : 0},
-              {"slow", beside.slow ? options.slow : 0},
+  return Json{{"malformed", beside.malformed ? Crowd::kMalformed : 0},
+              {"silent", beside.silent ? Crowd::kSilent : 0},
+              {"slow", beside.slow ? Crowd::kSlow : 0},
               {"requests", times_ms.size()},
               {"median_ms", median(times_ms)},
               {"most_ms", *std::ranges::max_element(times_ms)}};
@@ -48,18 +48,14 @@ Result<Json> row_of(const app::RigClient& client, int port, const Beside& beside
 
 }  // namespace
 
-Result<Rows> door_table(const DoorOptions& options) {
+/// How long a daemon without devices takes for GET /api/v1/rig on a connection of its own, median and worst
+/// in ms: undisturbed; beside malformed requests one after another; beside silent clients, every second one
+/// of them in the middle of its request; beside slow readers, who ask for openapi.json twenty times at once
+/// and take 40 kB a second of it; beside all of them. Errors: those of RigServer::start() and
+/// RigClient::connect(), kTryAgain where a client cannot connect.
+Result<Rows> door_table(const StudyOptions& options) {
   const TemporaryFolder folder;
-  capture::Rig rig;
-  rig.name = "bench";
-  rig.scan.sessions = folder.path() / "scans";
-  rig.daemon.port = 0;
-  rig.daemon.state = folder.path() / "state";
-  const Error no_devices = {ErrorKind::kTryAgain, "this rig has no devices", rig.name, "", "name another"};
-  const Result<std::unique_ptr<app::RigServer>> server = app::RigServer::start(
-      rig, [&](const capture::Rig&) -> Result<capture::RigDevices> { return no_devices; },
-      [&](const capture::ScanRequest&, capture::Lamps&, capture::Camera&, const capture::ScanEvents&,
-          const capture::ScanControl&) -> Result<capture::ScanOutcome> { return no_devices; });
+  const auto server = server_without_devices("bench", folder.path() / "scans", folder.path() / "state");
   if (!server) return server.error();
   const Result<app::RigClient> client = app::RigClient::connect((*server)->address());
   if (!client) return client.error();

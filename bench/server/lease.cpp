@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/server/lease.h"
+#include "bench/server/studies.h"
 
 #include <fmt/format.h>
 
@@ -31,9 +31,9 @@ void sleep_s(double seconds) {
 
 class Desk {
  public:
-  explicit Desk(const ServerLeaseOptions& options) : options_(options) {}
+  explicit Desk(const StudyOptions& options) : options_(options) {}
 
-  Result<void> start() { return rig_.start(options_.programs, options_.scene, 0.05); }
+  Result<void> start() { return rig_.start(options_.programs, options_.scenes / "satin.toml", 0.05); }
 
   // Seconds from the death to dark.
   Result<double> trial(bool daemon_dies, int led, double after_s) {
@@ -72,13 +72,18 @@ class Desk {
     }
   }
 
-  const ServerLeaseOptions& options_;
+  const StudyOptions& options_;
   ServedRig rig_;
 };
 
 }  // namespace
 
-Result<Rows> server_lease_table(const ServerLeaseOptions& options) {
+/// How long a LED stays lit once nobody holds it, told by the pins of a virtual board. A client lights a LED
+/// through weft serve, renews it every half second, and at a random moment falls silent, or the daemon is
+/// killed (SIGKILL). A row a death: "death" (client, daemon), "trials", "median_s", "worst_s", "late" (trials
+/// that were not dark after 2 s). Errors: of the rig's and the daemon's start, and of a light that is
+/// refused.
+Result<Rows> server_lease_table(const StudyOptions& options) {
   Desk desk(options);
   if (Result<void> ok = desk.start(); !ok) return std::move(ok).error();
   std::mt19937_64 random(options.seed);
@@ -86,14 +91,14 @@ Result<Rows> server_lease_table(const ServerLeaseOptions& options) {
   Rows rows;
   for (const bool daemon_dies : {false, true}) {
     std::vector<double> seconds;
-    for (int i = 0; i < options.trials; ++i) {
+    for (int i = 0; i < options.runs; ++i) {
       Result<double> dark = desk.trial(daemon_dies, 1 + i % kLeds, moment(random));
       if (!dark) return std::move(dark).error();
       seconds.push_back(*dark);
-      options.progress(i + 1 + (daemon_dies ? options.trials : 0), 2 * options.trials);
+      options.progress(i + 1 + (daemon_dies ? options.runs : 0), 2 * options.runs);
     }
     rows.push_back({{"death", daemon_dies ? "daemon" : "client"},
-                    {"trials", options.trials},
+                    {"trials", options.runs},
                     {"median_s", median(seconds)},
                     {"worst_s", *std::ranges::max_element(seconds)},
                     {"late", std::ranges::count_if(seconds, [](double s) { return s > kDark_s; })}});

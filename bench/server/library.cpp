@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/server/library.h"
+#include "bench/server/studies.h"
 
 #include <fmt/format.h>
 
@@ -27,7 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kRig = "bench";
-constexpr int kUnfinishedEach = 1000;  // one of so many sessions
+constexpr int kServed = 40'000, kRebuilt = 10'000, kSearched = 100'000;  // sessions without photographs
+constexpr int kUnfinishedEach = 1000;                                    // one of so many sessions
 constexpr std::array<const char*, 5> kFabrics = {"wool twill", "cotton satin", "silk crepe", "linen canvas",
                                                  "polyester velvet"};
 constexpr std::array<const char*, 4> kTags = {"autumn", "spring", "coat", "lining"};
@@ -97,14 +98,14 @@ Result<void> wait_for(const app::RigClient& client, int sessions) {
   }
 }
 
-Result<void> measure_calls(const ServerLibraryOptions& options, Rows& rows) {
+Result<void> measure_calls(const StudyOptions& options, Rows& rows) {
   const TemporaryFolder folder;
-  write_sessions(folder.path() / "scans", options.served);
+  write_sessions(folder.path() / "scans", kServed);
   const auto server = server_without_devices(kRig, folder.path() / "scans", folder.path() / "state");
   if (!server) return server.error();
   const Result<app::RigClient> client = app::RigClient::connect((*server)->address());
   if (!client) return client.error();
-  if (Result<void> ok = wait_for(*client, options.served); !ok) return ok;
+  if (Result<void> ok = wait_for(*client, kServed); !ok) return ok;
 
   const std::string scan = "/api/v1/scan";
   for (const auto& [what, path] : {std::pair<std::string, std::string>("POST scan, its choice", scan),
@@ -114,7 +115,7 @@ Result<void> measure_calls(const ServerLibraryOptions& options, Rows& rows) {
                                    {"GET sessions, a tag", "/api/v1/sessions?tag=coat"},
                                    {"GET sessions, a page of 100", "/api/v1/sessions?limit=100"}}) {
     std::vector<double> times_ms;
-    for (int i = 0; i < options.questions; ++i) {
+    for (int i = 0; i < options.runs; ++i) {
       Result<Json> answer = Json();
       times_ms.push_back(milliseconds_of([&] {
         const Json body = {{"fabric", fmt::format("{} {}", kFabrics[0], i)}, {"dry_run", true}};
@@ -122,14 +123,14 @@ Result<void> measure_calls(const ServerLibraryOptions& options, Rows& rows) {
       }));
       if (!answer) return answer.error();
     }
-    rows.push_back(row_of(what, options.served, times_ms, 50));
+    rows.push_back(row_of(what, kServed, times_ms, 50));
   }
   return {};
 }
 
-Result<void> measure_reading(const ServerLibraryOptions& options, Rows& rows) {
+Result<void> measure_reading(const StudyOptions&, Rows& rows) {
   const TemporaryFolder folder;
-  write_sessions(folder.path() / "scans", options.rebuilt);
+  write_sessions(folder.path() / "scans", kRebuilt);
   Result<library::Catalogue> catalogue = library::Catalogue::open(folder.path() / "library.sqlite");
   if (!catalogue) return catalogue.error();
   for (const auto& [what, asked_ms] : {std::pair("rebuild", 10'000.0), {"refresh", 1000.0}}) {
@@ -137,35 +138,40 @@ Result<void> measure_reading(const ServerLibraryOptions& options, Rows& rows) {
     const double time_ms =
         milliseconds_of([&] { facts = catalogue->refresh({folder.path() / "scans"}, {.threads = 1}); });
     if (!facts) return facts.error();
-    rows.push_back(row_of(what, options.rebuilt, {time_ms}, asked_ms));
+    rows.push_back(row_of(what, kRebuilt, {time_ms}, asked_ms));
   }
   return {};
 }
 
-Result<void> measure_search(const ServerLibraryOptions& options, Rows& rows) {
+Result<void> measure_search(const StudyOptions& options, Rows& rows) {
   const TemporaryFolder folder;
-  write_sessions(folder.path() / "scans", options.searched);
+  write_sessions(folder.path() / "scans", kSearched);
   Result<library::Catalogue> catalogue = library::Catalogue::open(folder.path() / "library.sqlite");
   if (!catalogue) return catalogue.error();
   if (const auto facts = catalogue->refresh({folder.path() / "scans"}, {}); !facts) return facts.error();
-  const library::Query by_word = {.words = "wool"}, by_barcode = {.words = barcode(options.searched / 2)},
-                       by_id = {.id = barcode(options.searched / 2)};
+  const library::Query by_word = {.words = "wool"}, by_barcode = {.words = barcode(kSearched / 2)},
+                       by_id = {.id = barcode(kSearched / 2)};
   for (const auto& [what, query] :
        {std::pair("search by word, ranked", by_word), {"search by barcode", by_barcode}, {"by id", by_id}}) {
     std::vector<double> times_ms;
-    for (int i = 0; i < options.questions; ++i) {
+    for (int i = 0; i < options.runs; ++i) {
       Result<library::Page> page = library::Page();
       times_ms.push_back(milliseconds_of([&] { page = catalogue->find(query); }));
       if (!page) return page.error();
     }
-    rows.push_back(row_of(what, options.searched, times_ms, 100));
+    rows.push_back(row_of(what, kSearched, times_ms, 100));
   }
   return {};
 }
 
 }  // namespace
 
-Result<Rows> server_library_table(const ServerLibraryOptions& options) {
+/// A row a number that is asked of the library: what, of how many sessions, median and worst in ms, what is
+/// asked in ms, whether it holds. The first rows are calls of a server without devices over HTTP (the choice
+/// of POST scan by its dry run), the others of a catalogue: made from nothing, looked through where nothing
+/// changed, searched by a word that a fifth of the sessions have and by a barcode. Errors: those of
+/// RigServer::start() and Catalogue::open().
+Result<Rows> server_library_table(const StudyOptions& options) {
   Rows rows;
   int done = 0;
   for (const auto& measure : {measure_calls, measure_reading, measure_search}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/server/scan_beside.h"
+#include "bench/server/studies.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -90,32 +90,31 @@ Result<std::vector<std::string>> tiles_to_look_at(const ServedRig& served, std::
   return calls;
 }
 
-}  // namespace
-
-Result<Rows> scan_beside_table(const ScanBesideOptions& options) {
+Result<Rows> scans_beside(const StudyOptions& options, int viewer_count) {
   ServedRig served;
-  if (Result<void> ok = served.start(options.programs, options.scene, options.megapixels); !ok)
+  if (Result<void> ok = served.start(options.programs, options.scenes / "satin.toml", options.megapixels);
+      !ok)
     return std::move(ok).error();
   if (Result<void> ok = served.serve(); !ok) return std::move(ok).error();
   if (const Result<ScanTime> first = time_of_scan(served); !first) return first.error();  // watches the clock
   std::vector<std::string> calls;
-  if (options.viewers > 0) {
+  if (viewer_count > 0) {
     Result<std::vector<std::string>> tiles = tiles_to_look_at(served, options.seed);
     if (!tiles) return std::move(tiles).error();
     calls = std::move(*tiles);
   }
   std::vector<double> alone, beside, ratios, answers_ms;
-  for (int turn = 0; turn < options.turns; ++turn) {
+  for (int turn = 0; turn < options.runs; ++turn) {
     const Result<ScanTime> quiet = time_of_scan(served);
     if (!quiet) return quiet.error();
     Crowd crowd(served.port());
     std::optional<Viewers> viewers;
-    if (options.viewers > 0) {
-      viewers.emplace(served, options.viewers, calls);
+    if (viewer_count > 0) {
+      viewers.emplace(served, viewer_count, calls);
     } else {
-      if (Result<void> there = crowd.stay_silent(options.silent); !there) return std::move(there).error();
-      crowd.read_slowly(options.slow);
-      crowd.send_malformed(options.malformed, options.seed + static_cast<std::uint64_t>(turn));
+      if (Result<void> there = crowd.stay_silent(); !there) return std::move(there).error();
+      crowd.read_slowly();
+      crowd.send_malformed(options.seed + static_cast<std::uint64_t>(turn));
     }
     const Result<ScanTime> loud = time_of_scan(served);
     if (!loud) return loud.error();
@@ -123,14 +122,29 @@ Result<Rows> scan_beside_table(const ScanBesideOptions& options) {
     beside.push_back(loud->seconds);
     ratios.push_back(loud->seconds / quiet->seconds);
     answers_ms.insert(answers_ms.end(), loud->answers_ms.begin(), loud->answers_ms.end());
-    options.progress(turn + 1, options.turns);
+    options.progress(turn + 1, options.runs);
   }
-  return Rows{{{"turns", options.turns},
+  return Rows{{{"turns", options.runs},
                {"alone_s", median(alone)},
                {"beside_s", median(beside)},
                {"ratio", median(ratios)},
                {"median_ms", median(answers_ms)},
                {"most_ms", *std::ranges::max_element(answers_ms)}}};
+}
+
+}  // namespace
+
+/// What clients cost a scan: in turn one alone, and one beside those who mean ill (malformed requests one
+/// after another, silent clients, slow readers; crowd.h) or beside viewers, each asking for one tile after
+/// another. One row: "turns", "alone_s" and "beside_s" (median), "ratio" (median of the pairs), "median_ms"
+/// and "most_ms" of GET /api/v1/rig every 50 ms beside them.
+/// Errors: of the rig's and the daemon's start, and of a scan.
+Result<Rows> scan_beside_table(const StudyOptions& options) {
+  return scans_beside(options, 0);
+}
+
+Result<Rows> viewers_table(const StudyOptions& options) {
+  return scans_beside(options, 2);
 }
 
 }  // namespace weft::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/solve/end_to_end.h"
+#include "bench/solve/studies.h"
 
 #include <fmt/format.h>
 
@@ -48,7 +48,10 @@ Result<double> write_seconds(const fs::path& maps, const fs::path& folder) {
 
 }  // namespace
 
-Result<Rows> end_to_end(const EndToEndOptions& options) {
+/// From eleven DNG files to maps on disk by `weft solve --quality fast`, next to LibRaw's unpacking of the
+/// same files and OpenEXR's and libpng's writing of the same maps, with the same threads: `ratio` is decode
+/// to write over their sum, without compression, syncing and hashing. Memory is the peak of the process.
+Result<Rows> end_to_end(const StudyOptions& options) {
   const TemporaryFolder scratch;
   const Size size = bench_size(options.megapixels);
   const int threads = resolved_threads(options.threads);
@@ -83,7 +86,7 @@ Result<Rows> end_to_end(const EndToEndOptions& options) {
     maps = scratch.path() / fmt::format("maps{}", i);
     const Result<Json> solved = json_of_command(
         fmt::format("'{}' solve '{}' -o '{}' --quality fast --no-previews --quiet --json --threads {}",
-                    options.program.string(), folder.string(), maps.string(), threads));
+                    (options.programs / "weft").string(), folder.string(), maps.string(), threads));
     if (!solved) return solved.error();
     const Json& s = (*solved)["seconds"];
     const double work = s["read"].get<double>() + s["solve"].get<double>() + s["write"].get<double>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/solve/registration.h"
+#include "bench/solve/studies.h"
 
 #include <algorithm>
 #include <array>
@@ -212,11 +212,16 @@ Result<void> add_rows(const Swatch& cloth, bool moves, std::span<const solver::L
 
 }  // namespace
 
-Result<Rows> registration(int threads) {
+/// Cloths through DNG files, with shadows, bounces, defocus and noise. In three families of matt weave at two
+/// sizes of pixel one shot of ten has moved; in ten glossy cloths none has. How well the shift is measured,
+/// and the mean error without movement, with registration off and with it on (pipeline/shifts.h).
+/// `taken_back` is the share of the damage that registration undoes, `predicted_deg` cost_deg of the shot,
+/// `real_deg` what the movement adds to the rms error.
+Result<Rows> registration(const StudyOptions& options) {
   constexpr std::array kOfMoved = {solver::Level::kFast, solver::Level::kStandard, solver::Level::kRobust};
   constexpr std::array kOfStill = {solver::Level::kStandard, solver::Level::kRobust};
   JobContext context;
-  context.threads = threads;
+  context.threads = options.threads;
   Rows rows;
   for (const Swatch& cloth : kMatt) {
     if (Result<void> ok = add_rows(cloth, true, kOfMoved, context, rows); !ok) return std::move(ok).error();

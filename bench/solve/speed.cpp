@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/solve/speed.h"
+#include "bench/solve/studies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -109,7 +109,13 @@ Timing time_seed(const LightField& field, Size size, int threads) {
 
 }  // namespace
 
-Result<Rows> solve_speed(const SpeedOptions& options) {
+/// Time of the solver in memory, next to two yardsticks of the same run and the same threads:
+///   copy    C: memcpy that reads and writes as many bytes in all as the bare kernel does
+///   unpack  U: LibRaw's open and unpack of the eleven frames as DNG files
+/// and the rows bare, fast, least-squares and seed (on fewer pixels: it takes as long a pixel).
+/// `standard` also with the channels .model of sigma, which a solve of a session writes.
+/// `ratio_to_copy` is against a copy of the bytes that the row itself moves, `ratio_to_unpack` against U.
+Result<Rows> solve_speed(const StudyOptions& options) {
   const int threads = resolved_threads(options.threads);
   const Size size = bench_size(options.megapixels);
   const double pixels = static_cast<double>(size.pixels());

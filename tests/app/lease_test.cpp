@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/server/lease.h"
+#include "bench/server/studies.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@ namespace weft::bench {
 namespace {
 
 TEST(LightLease, EndsWithinTwoSecondsOfTheDeathOfClientAndDaemon) {
-  ServerLeaseOptions options;
+  StudyOptions options;
   options.programs = program_folder();
-  options.scene = in_sources("testdata/scenes/satin.toml");
-  options.trials = 5;
+  options.scenes = in_sources("testdata/scenes");
+  options.runs = 5;
   const auto rows = server_lease_table(options);
   ASSERT_TRUE(rows) << rows.error().message();
   ASSERT_EQ(rows->size(), 2U);

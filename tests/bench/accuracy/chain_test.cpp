@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/accuracy/chain.h"
+#include "bench/accuracy/accuracy.h"
 
 #include <gtest/gtest.h>
 
@@ -33,9 +33,9 @@ TEST(Chain, DrawsOtherClothsForAnotherSeed) {
 }
 
 TEST(Chain, NamesTheCasesWhereOneIsUnknown) {
-  ChainOptions options;
-  options.rig = kRig;
-  options.name = "brocade";
+  AccuracyTableOptions options;
+  options.scenes = std::filesystem::path(kRig).parent_path();
+  options.scene = "brocade";
   const auto refused = chain_table(options);
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);

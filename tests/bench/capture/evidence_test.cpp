@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/capture/evidence.h"
+#include "bench/capture/studies.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/capture/studies.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <numeric>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "bench/capture/process_size.h"
+#include "capture/board/led_board.h"
+#include "capture/camera/camera_link.h"
+#include "capture/camera/worker_lines.h"
+#include "capture/camera/worker_process.h"
+#include "capture/raw/decode.h"
+#include "capture/rig.h"
+#include "capture/rig_devices/rig_devices.h"
+#include "capture/scan/scan.h"
+#include "core/error_json.h"
+#include "core/files.h"
+#include "core/job.h"
+#include "core/statistics.h"
+#include "core/temporary_folder.h"
+
+namespace weft::bench {
+
+/// One row: commands sent, lost, their median, 99th percentile and greatest time in ms, and what the board
+/// itself counts as bad frames and overruns. Lights every LED in turn. Errors: those of LedBoard::open().
+Result<Rows> capture_board_table(const StudyOptions& options) {
+  const Result<capture::Rig> rig = capture::read_rig(options.rig);
+  if (!rig) return rig.error();
+  auto board = capture::LedBoard::open({rig->board.port});
+  if (!board) return std::move(board).error();
+  const auto before = (*board)->status();
+  if (!before) return before.error();
+
+  std::vector<double> times_ms;
+  for (int i = 0; i < options.runs; ++i) {
+    const int led = 1 + i % (*board)->leds();
+    const auto begin = std::chrono::steady_clock::now();
+    const auto lit = (*board)->light({&led, 1}, 1);
+    const std::chrono::duration<double, std::milli> time_ms = std::chrono::steady_clock::now() - begin;
+    if (lit && *lit == 0) times_ms.push_back(time_ms.count());
+  }
+  static_cast<void>((*board)->light({}, 0));
+  const auto after = (*board)->status();
+  if (!after) return after.error();
+
+  const Json row = {{"commands", options.runs},
+                    {"lost", options.runs - static_cast<int>(times_ms.size())},
+                    {"median_ms", lower_quantile(times_ms, 0.5)},
+                    {"p99_ms", lower_quantile(times_ms, 0.99)},
+                    {"most_ms", lower_quantile(times_ms, 1)},
+                    {"bad_frames", after->bad_frames - before->bad_frames},
+                    {"overruns", after->overruns - before->overruns}};
+  return Rows{row};
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::steady_clock;
+
+constexpr double kBar = 1.15;
+constexpr int kRounds = 3;
+constexpr auto kPatience = std::chrono::seconds(10);
+
+/// A camera that photographs so often at one exposure.
+struct ShotLoop {
+  std::string port;  ///< of a running camera: "ptpip:127.0.0.1:15740:15740"
+  std::string profile;
+  int shots = 0;
+  capture::ExposureSettings exposure;
+};
+
+Result<Json> ask(capture::WorkerProcess& worker, const Json& request, steady_clock::duration patience) {
+  if (Result<void> sent = worker.send(request.dump()); !sent) return std::move(sent).error();
+  const Result<std::string> line = worker.read_line(steady_clock::now() + patience);
+  if (!line) return line.error();
+  const Json answer = Json::parse(*line, nullptr, false);
+  if (answer.is_object() && answer.contains("ok")) return answer["ok"];
+  return error_of_json(answer.is_object() ? answer.value("error", Json()) : Json(), "weft-camera");
+}
+
+Result<void> add_bare(const ShotLoop& loop, const fs::path& home, std::vector<double>& seconds) {
+  const auto worker =
+      capture::WorkerProcess::start(capture::weft_camera_program(), {{"HOME", home.string()}});
+  if (!worker) return worker.error();
+  const Json open = {
+      {"id", 1}, {"do", "open"}, {"profile", loop.profile}, {"port", loop.port}, {"serial", ""}};
+  if (const auto opened = ask(**worker, open, kPatience); !opened) return opened.error();
+  const Json set = {{"id", 2}, {"do", "set"}, {"exposure", capture::line_of(loop.exposure)}};
+  if (const auto done = ask(**worker, set, kPatience); !done) return done.error();
+  const Json bare = {{"id", 3}, {"do", "bare"}, {"shots", loop.shots}};
+  const Result<Json> taken = ask(**worker, bare, loop.shots * kPatience);
+  if (!taken) return taken.error();
+  for (const Json& each : (*taken)["seconds"]) seconds.push_back(each.get<double>());
+  (*worker)->end(steady_clock::now() + std::chrono::seconds(1));
+  return {};
+}
+
+Result<void> add_ours(const ShotLoop& loop, const fs::path& home, std::vector<double>& seconds) {
+  capture::CameraLinkOptions link_options;
+  link_options.port = loop.port;
+  link_options.profile = loop.profile;
+  link_options.state = home;
+  const auto link = capture::CameraLink::make(std::move(link_options));
+  if (!link) return link.error();
+  if (const auto facts = (*link)->connect(); !facts) return facts.error();
+  if (const auto facts = (*link)->set(loop.exposure); !facts) return facts.error();
+  for (int shot = 0; shot < loop.shots; ++shot) {
+    const auto begin = steady_clock::now();
+    const auto taken = (*link)->take(home / ("shot" + std::to_string(shot)), [] {});
+    if (!taken) return taken.error();
+    seconds.push_back(std::chrono::duration<double>(steady_clock::now() - begin).count());
+    std::error_code ignored;
+    fs::remove(taken->file, ignored);
+  }
+  return {};
+}
+
+/// Seconds of each turn of a bare loop of trigger, wait_for_event and file_get.
+Result<std::vector<double>> bare_shots_s(const ShotLoop& loop) {
+  const TemporaryFolder scratch;
+  std::vector<double> seconds;
+  if (Result<void> ok = add_bare(loop, scratch.path(), seconds); !ok) return std::move(ok).error();
+  return seconds;
+}
+
+}  // namespace
+
+/// What a photograph through CameraLink costs, in its file, synced, summed up and proved to be the one asked
+/// for, against a bare loop of trigger, wait_for_event and file_get through the same libgphoto2 and camera.
+/// The loops take turns. Medians over all shots: `seconds` a shot, `ratio` to the bare loop; `bar` is what is
+/// asked for.
+Result<Rows> capture_camera_table(const StudyOptions& options) {
+  const Result<capture::Rig> rig = capture::read_rig(options.rig);
+  if (!rig) return rig.error();
+  const ShotLoop loop = {rig->camera.port, rig->camera.profile, options.runs, {1e6 / 60, 100, 8}};
+  const TemporaryFolder scratch;
+  std::vector<double> bare, ours;
+  for (int round = 0; round < kRounds; ++round) {
+    if (Result<void> ok = add_bare(loop, scratch.path(), bare); !ok) return std::move(ok).error();
+    if (Result<void> ok = add_ours(loop, scratch.path(), ours); !ok) return std::move(ok).error();
+  }
+  const double yardstick = median(bare);
+  return Rows{
+      {{"loop", "bare"}, {"shots", bare.size()}, {"seconds", yardstick}, {"ratio", 1.0}, {"bar", kBar}},
+      {{"loop", "weft"},
+       {"shots", ours.size()},
+       {"seconds", median(ours)},
+       {"ratio", median(ours) / yardstick},
+       {"bar", kBar}}};
+}
+
+namespace {
+
+constexpr double kLooks_s = 3, kExposure_us = 20000;
+constexpr double kAskedFirst_s = 1.5, kAskedRate = 10;
+
+double since_s(steady_clock::time_point began) {
+  return std::chrono::duration<double>(steady_clock::now() - began).count();
+}
+
+class Finder {
+ public:
+  Finder(int rounds, capture::RigDevices devices) : rounds_(rounds), devices_(std::move(devices)) {}
+
+  Result<Rows> table() {
+    if (const auto facts = devices_.camera->connect(); !facts) return facts.error();
+    for (int round = 0; round < rounds_; ++round) {
+      if (Result<void> ok = look(); !ok) return ok.error();
+      if (Result<void> ok = photograph(after_live_s_); !ok) return ok.error();
+      if (Result<void> ok = photograph(plain_s_); !ok) return ok.error();
+    }
+    return Rows{{{"what", "first picture, s"}, {"reached", worst_first_s_}, {"asked", kAskedFirst_s}},
+                {{"what", "pictures a second"}, {"reached", pictures_ / looked_s_}, {"asked", kAskedRate}},
+                {{"what", "photograph after live view, s"}, {"reached", median(after_live_s_)}},
+                {{"what", "photograph, s"}, {"reached", median(plain_s_)}}};
+  }
+
+ private:
+  Result<void> look() {
+    const auto asked = steady_clock::now();
+    if (const auto first = devices_.camera->look(); !first) return first.error();
+    worst_first_s_ = std::max(worst_first_s_, since_s(asked));
+    const auto began = steady_clock::now();
+    for (; since_s(began) < kLooks_s; ++pictures_) {
+      if (const auto picture = devices_.camera->look(); !picture) return picture.error();
+    }
+    looked_s_ += since_s(began);
+    return {};
+  }
+
+  Result<void> photograph(std::vector<double>& seconds) {
+    const auto began = steady_clock::now();
+    if (const auto set = devices_.camera->set({kExposure_us, 100, 8}); !set) return set.error();
+    const auto taken = devices_.camera->take(scratch_.path() / "shot", [] {});
+    if (!taken) return taken.error();
+    seconds.push_back(since_s(began));
+    std::error_code ignored;
+    std::filesystem::remove(taken->file, ignored);
+    return {};
+  }
+
+  const int rounds_;
+  capture::RigDevices devices_;
+  const TemporaryFolder scratch_;
+  double worst_first_s_ = 0, pictures_ = 0, looked_s_ = 0;
+  std::vector<double> after_live_s_, plain_s_;
+};
+
+}  // namespace
+
+/// How soon and how often a camera's finder shows something through CameraLink, and that a photograph between
+/// two rounds costs what it costs without. Rows: "first picture" (seconds, the longest of the rounds),
+/// "pictures"
+/// ("a_second", over all rounds), "photograph after live view" and "photograph" (seconds, medians); "asked"
+/// is what is asked for.
+Result<Rows> capture_live_view_table(const StudyOptions& options) {
+  const Result<capture::Rig> rig = capture::read_rig(options.rig);
+  if (!rig) return rig.error();
+  Result<capture::RigDevices> devices = capture::open_devices(*rig);
+  if (!devices) return std::move(devices).error();
+  return Finder(options.runs, std::move(*devices)).table();
+}
+
+namespace {
+
+constexpr int kRows = 10, kTurns = 13;
+
+/// What frames show, whatever their times and numbers.
+using Digests = std::map<std::string, std::string>;
+
+Result<Digests> digests_of(const Session& session) {
+  Digests digests;
+  for (const Shot& shot : session.shots) {
+    const Result<RawFrame> frame = capture::decode_raw(session.path_of(shot));
+    if (!frame) return frame.error();
+    const View<const std::uint16_t> counts = frame->counts.plane();
+    std::string bytes;
+    for (int y = 0; y < counts.size().height; ++y) {
+      bytes.append(reinterpret_cast<const char*>(counts.row(y)),
+                   static_cast<std::size_t>(counts.size().width) * sizeof(std::uint16_t));
+    }
+    digests[shot.file] = sha256_of(bytes);
+  }
+  return digests;
+}
+
+struct OneScan {
+  double seconds = 0;
+  std::size_t frames = 0;
+  Digests digests;
+  ProcessSize camera;  ///< weft-camera at its end
+};
+
+/// Seconds of a turn of the bare loop, in the mean.
+Result<double> bare_s(const capture::Rig& rig) {
+  const Result<std::vector<double>> turns =
+      bare_shots_s({rig.camera.port, rig.camera.profile, kTurns, {kExposure_us, 100, 8}});
+  if (!turns) return turns.error();
+  return std::accumulate(turns->begin(), turns->end(), 0.0) / kTurns;
+}
+
+Result<OneScan> scan_once(const capture::Rig& rig, const std::stop_token& stop, const fs::path& folder) {
+  Stopwatch watch;
+  Result<capture::RigDevices> devices = capture::open_devices(rig);
+  if (!devices) return std::move(devices).error();
+  capture::ScanRequest request;
+  request.session = folder;
+  request.fabric = "bench";
+  request.rig = rig.name;
+  request.calibration = rig.scan.calibration;
+  request.exposure = {kExposure_us, rig.scan.iso, rig.scan.f_number};
+  const Result<capture::ScanOutcome> outcome =
+      capture::scan(request, *devices->lamps, *devices->camera, {}, {.cancel = stop, .pause = nullptr});
+  if (!outcome) return outcome.error();
+  OneScan one;
+  one.seconds = watch.lap();
+  one.frames = outcome->session.shots.size();
+  if (const auto worker = child_of(::getpid(), "weft-camera"))
+    one.camera = size_of(*worker).value_or(ProcessSize{});
+  Result<Digests> digests = digests_of(outcome->session);
+  if (!digests) return std::move(digests).error();
+  one.digests = std::move(*digests);
+  return one;
+}
+
+}  // namespace
+
+/// Scans the same cloth again and again, each time with the devices opened anew, looks whether every frame
+/// shows what it showed in the first scan (so the rig's noise must depend on the light alone), and removes
+/// the session. Rows, at about ten points along the way: scans, seconds a scan (least, median) and the median
+/// over as many turns of a bare loop as a scan has frames, measured before; memory and open descriptors of
+/// this process and of weft-camera; frames that differ.
+Result<Rows> capture_scans_table(const StudyOptions& options) {
+  const Result<capture::Rig> rig = capture::read_rig(options.rig);
+  if (!rig) return rig.error();
+  const TemporaryFolder scratch;
+  const Result<double> bare = bare_s(*rig);
+  if (!bare) return bare.error();
+  Rows rows;
+  Digests first;
+  std::vector<double> seconds;
+  int differ = 0;
+  for (int i = 1; i <= options.runs; ++i) {
+    const fs::path session = scratch.path() / "scan.weft";
+    const Result<OneScan> one = scan_once(*rig, options.stop, session);
+    if (!one) return one.error();
+    if (i == 1) first = one->digests;
+    for (const auto& [file, digest] : one->digests) differ += first[file] == digest ? 0 : 1;
+    seconds.push_back(one->seconds);
+    std::error_code failed;
+    fs::remove_all(session, failed);
+    if (failed) return cannot_write(session, failed.value());
+    options.progress(i, options.runs);
+    if (i != 1 && i != options.runs && i % std::max(1, options.runs / kRows) != 0) continue;
+    const double middle = median(seconds);
+    const ProcessSize size = size_of(::getpid()).value_or(ProcessSize{});
+    rows.push_back({{"scans", i},
+                    {"frames", one->frames},
+                    {"least_s", *std::ranges::min_element(seconds)},
+                    {"median_s", middle},
+                    {"over_bare_loop", middle / (*bare * static_cast<double>(one->frames))},
+                    {"resident_mb", static_cast<double>(size.resident_bytes) / 1e6},
+                    {"descriptors", size.descriptors},
+                    {"camera_resident_mb", static_cast<double>(one->camera.resident_bytes) / 1e6},
+                    {"camera_descriptors", one->camera.descriptors},
+                    {"frames_that_differ", differ}});
+  }
+  return rows;
+}
+
+}  // namespace weft::bench

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bench/base/study.h"
+
+// What is measured of it: each table says in its file what its columns are.
+
+namespace weft::bench {
+
+Result<Rows> effects_auto(const StudyOptions& options);
+Result<Rows> effects_cost(const StudyOptions& options);
+Result<Rows> effects_embree(const StudyOptions& options);
+Result<Rows> effects_rays(const StudyOptions& options);
+/// With pictures in `folder`.
+Result<Rows> effects_gallery(const std::filesystem::path& folder, int threads);
+
+}  // namespace weft::bench
