@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "bench/accuracy/contenders.h"
+#include "bench/accuracy/score.h"
 #include "bench/base/bound.h"
 #include "bench/base/solved_maps.h"
 #include "simulator/camera/sensor.h"

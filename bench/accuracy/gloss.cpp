@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "bench/accuracy/contenders.h"
 #include "bench/accuracy/scenes.h"
 #include "bench/accuracy/score.h"
 #include "core/parallel.h"

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "bench/accuracy/contenders.h"
 #include "bench/accuracy/coverage.h"
 #include "bench/accuracy/score.h"
 #include "core/files.h"

@@ -12,7 +12,7 @@
 
 #include "app/jobs/compare.h"
 #include "app/jobs/photo_input.h"
-#include "bench/accuracy/contenders.h"
+#include "bench/accuracy/score.h"
 #include "bench/base/solved_maps.h"
 #include "core/image_io/image_io.h"
 #include "core/parallel.h"

@@ -2,14 +2,16 @@
 #include "bench/base/yardsticks.h"
 
 #include <fmt/format.h>
+#include <libraw/libraw.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <utility>
 #include <vector>
 
-#include "bench/base/libraw_alone.h"
 #include "bench/base/report.h"
 #include "bench/base/rig.h"
 #include "core/parallel.h"
@@ -108,6 +110,20 @@ Result<Yardsticks> measure_yardsticks(int threads) {
   const Result<double> unpack = unpack_seconds_a_pixel(grey_mosaics(*field, size, threads), threads);
   if (!unpack) return unpack.error();
   return Yardsticks{copy_seconds(kBytes, threads) / kBytes, *unpack};
+}
+
+Result<double> unpack_seconds(const std::vector<std::filesystem::path>& files, int threads) {
+  std::atomic<int> failures = 0;
+  const double seconds = least_seconds(3, [&] {
+    parallel_for(files.size(), threads, [&](std::size_t i, int) {
+      const auto raw = std::make_unique<LibRaw>();
+      if (raw->open_file(files[i].c_str()) != LIBRAW_SUCCESS || raw->unpack() != LIBRAW_SUCCESS) ++failures;
+    });
+  });
+  if (failures > 0) {
+    return Error{ErrorKind::kInternal, "LibRaw cannot read our own DNG", files.front().string(), "", ""};
+  }
+  return seconds;
 }
 
 }  // namespace weft::bench

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <vector>
+
 #include "core/image.h"
 #include "core/light_field.h"
 #include "core/result.h"
@@ -27,5 +30,9 @@ struct Yardsticks {
 };
 /// Both, of 4 megapixels.
 Result<Yardsticks> measure_yardsticks(int threads);
+
+/// LibRaw alone: least wall seconds of three runs to open and unpack every file, the files shared out among
+/// the threads.
+Result<double> unpack_seconds(const std::vector<std::filesystem::path>& files, int threads);
 
 }  // namespace weft::bench

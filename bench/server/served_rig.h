@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "app/server/http/client.h"
+#include "app/server/rig_server.h"
 #include "core/process.h"
 #include "core/result.h"
 #include "core/temporary_folder.h"
@@ -35,5 +37,10 @@ class ServedRig {
   std::optional<app::RigClient> client_;
   int port_ = 0;
 };
+
+/// A server of sessions alone, at any free port. Errors of RigServer::start().
+Result<std::unique_ptr<app::RigServer>> server_without_devices(const std::string& rig,
+                                                               const std::filesystem::path& sessions,
+                                                               const std::filesystem::path& state);
 
 }  // namespace weft::bench

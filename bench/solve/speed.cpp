@@ -1,21 +1,100 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/solve/studies.h"
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfThreading.h>
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
 #include <vector>
 
-#include "bench/base/cloth_mosaics.h"
+#include "bench/base/report.h"
 #include "bench/base/rig.h"
 #include "bench/base/yardsticks.h"
+#include "core/image_io/png_library.h"
 #include "core/parallel.h"
+#include "core/result.h"
+#include "core/session.h"
+#include "core/temporary_folder.h"
+#include "core/vec.h"
 #include "pipeline/bands.h"
+#include "pipeline/photographs.h"
+#include "simulator/simulate.h"
 #include "solver/kernels/linear.h"
 #include "solver/method.h"
 #include "solver/normals/seed.h"
 
 namespace weft::bench {
 namespace {
+
+enum class Cloth {
+  kSmooth,  ///< Lambert's law
+  kSatin    ///< and a highlight of the half vector, exponent 24, as strong as half the diffuse albedo
+};
+
+/// Puts cloth of albedo 0.4 before the lights of grey mosaics (bench/base/yardsticks.h), with photon and read
+/// noise: a weave of 24 pixels a period whose slopes reach 12 degrees, seen from above. Counts are a function
+/// of the pixel alone.
+void put_cloth(pipeline::Photographs& photographs, Cloth cloth, int threads);
+
+constexpr double kAlbedo = 0.4, kPeriod_px = 24, kSteepest_deg = 12, kLobe = 0.2, kExponent = 24;
+constexpr double kElectronsPerCount = 2.7, kReadNoise = 1.2;  // counts
+
+// A standard normal deviate that belongs to a number (splitmix64, Steele et al. 2014; Box and Muller 1958).
+double deviate(std::uint64_t number) {
+  std::uint64_t z = (number + 1) * 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  z ^= z >> 31;
+  const double u = (static_cast<double>(z >> 32) + 0.5) * 0x1p-32,
+               v = static_cast<double>(z & 0xffffffffu) * 0x1p-32;
+  return std::sqrt(-2 * std::log(u)) * std::cos(2 * kPi * v);
+}
+
+Vec3 weave_normal(int x, int y) {
+  const double slope = std::tan(radians(kSteepest_deg)) / std::sqrt(2.0), turn = 2 * kPi / kPeriod_px;
+  return normalized({slope * std::sin(turn * x), slope * std::sin(turn * y), 1});
+}
+
+// Of the light of strength 1.
+double reflected(Cloth cloth, Vec3 n, Vec3 l) {
+  const double diffuse = kAlbedo * std::max(0.0, dot(n, l));
+  if (cloth == Cloth::kSmooth) return diffuse;
+  const Vec3 half = normalized(l + Vec3{0, 0, 1});
+  return diffuse + kLobe * std::pow(std::max(0.0, dot(n, half)), kExponent);
+}
+
+void put_cloth(pipeline::Photographs& photographs, Cloth cloth, int threads) {
+  const double seconds = 1 / 100.0;  // as grey mosaics are exposed
+  for (std::size_t k = 0; k < photographs.count(); ++k) {
+    RawFrame& frame = photographs.mosaics()->frames[k];
+    const double black = frame.black[0][0], range = frame.white - black;
+    parallel_for(static_cast<std::size_t>(photographs.size.height), threads, [&](std::size_t row, int) {
+      const int y = static_cast<int>(row);
+      for (int x = 0; x < photographs.size.width; ++x) {
+        const LightField::Light light = photographs.field->at(k, frame.cfa.channel_at(x, y), x, y);
+        const double counts =
+            light.strength * seconds * range * reflected(cloth, weave_normal(x, y), light.direction);
+        const std::uint64_t site = (k * static_cast<std::size_t>(photographs.size.height) + row) * 0x100000 +
+                                   static_cast<unsigned>(x);
+        const double sigma = std::sqrt(counts / kElectronsPerCount + kReadNoise * kReadNoise);
+        frame.counts(x, y) = static_cast<std::uint16_t>(
+            std::lround(std::clamp(black + counts + sigma * deviate(site), 0.0, double{frame.white})));
+      }
+    });
+  }
+}
 
 constexpr std::size_t kLights = 10;
 constexpr int kSolveRepeats = 3;
@@ -182,6 +261,173 @@ Result<Rows> solve_speed(const StudyOptions& options) {
         (seed.seconds / seed.pixels) / (row["ns_per_pixel"].get<double>() * 1e-9);
   }
   return rows;
+}
+
+namespace {
+
+/// How long the library of its format takes to write the image of `file`, an EXR or PNG, to `copy` in one
+/// call, as it is stored. Error: kInputOutput.
+Result<double> write_alone_seconds(const std::filesystem::path& file, const std::filesystem::path& copy);
+
+namespace fs = std::filesystem;
+
+Result<double> exr_seconds(const fs::path& file, const fs::path& copy) try {
+  Imf::setGlobalThreadCount(hardware_threads());
+  Imf::InputFile in(file.c_str());
+  const Imath::Box2i window = in.header().dataWindow();
+  const auto width = static_cast<std::size_t>(window.max.x) + 1,
+             height = static_cast<std::size_t>(window.max.y) + 1;
+  std::vector<std::vector<char>> planes;
+  Imf::FrameBuffer frame;
+  for (auto c = in.header().channels().begin(); c != in.header().channels().end(); ++c) {
+    const std::size_t sample = c.channel().type == Imf::HALF ? 2 : 4;
+    planes.emplace_back(sample * width * height);
+    frame.insert(c.name(), Imf::Slice(c.channel().type, planes.back().data(), sample, sample * width));
+  }
+  in.setFrameBuffer(frame);
+  in.readPixels(window.min.y, window.max.y);
+  return least_seconds(3, [&] {
+    Imf::OutputFile out(copy.c_str(), in.header(), hardware_threads());
+    out.setFrameBuffer(frame);
+    out.writePixels(static_cast<int>(height));
+  });
+} catch (const std::exception& failure) {
+  return Error{ErrorKind::kInputOutput, "cannot write again", file.string(), failure.what(), ""};
+}
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+bool read_png(png_structp png, png_infop header, std::FILE* file) {
+  return png_does(png, [&] {
+    png_init_io(png, file);
+    png_read_png(png, header, PNG_TRANSFORM_IDENTITY, nullptr);
+  });
+}
+
+bool write_png(png_structp from, png_infop header, std::FILE* file) {
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, png_fails, png_warns);
+  png_infop copied = png_create_info_struct(png);
+  const bool done = png_does(png, [&] {
+    png_init_io(png, file);
+    png_set_IHDR(png, copied, png_get_image_width(from, header), png_get_image_height(from, header),
+                 png_get_bit_depth(from, header), png_get_color_type(from, header), PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+    png_set_compression_level(png, kPngEffort);
+    png_set_rows(png, copied, png_get_rows(from, header));
+    png_write_png(png, copied, PNG_TRANSFORM_IDENTITY, nullptr);
+  });
+  png_destroy_write_struct(&png, &copied);
+  return done;
+}
+
+Result<double> png_seconds(const fs::path& file, const fs::path& copy) {
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, png_fails, png_warns);
+  png_infop header = png_create_info_struct(png);
+  const File in(std::fopen(file.c_str(), "rb"), std::fclose);
+  bool done = in != nullptr && read_png(png, header, in.get());
+  const double seconds = !done ? 0 : least_seconds(3, [&] {
+    const File out(std::fopen(copy.c_str(), "wb"), std::fclose);
+    done &= out != nullptr && write_png(png, header, out.get());
+  });
+  png_destroy_read_struct(&png, &header, nullptr);
+  if (!done) return Error{ErrorKind::kInputOutput, "cannot write again", file.string(), "", ""};
+  return seconds;
+}
+
+Result<double> write_alone_seconds(const fs::path& file, const fs::path& copy) {
+  return file.extension() == ".png" ? png_seconds(file, copy) : exr_seconds(file, copy);
+}
+
+// Standard output of a command, parsed as JSON.
+Result<Json> json_of_command(const std::string& command) {
+  std::FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return Error{ErrorKind::kTryAgain, "cannot start", command, "", ""};
+  std::string text;
+  std::array<char, 4096> block = {};
+  for (std::size_t n; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
+    text.append(block.data(), n);
+  const int status = pclose(pipe);
+  Json json = Json::parse(text, nullptr, false);
+  if (status != 0 || json.is_discarded())
+    return Error{ErrorKind::kInternal, "the solve failed", command, text, ""};
+  return json;
+}
+
+// OpenEXR and libpng alone: the maps of a solve, as they are on disk, written again in one call each.
+Result<double> write_seconds(const fs::path& maps, const fs::path& folder) {
+  double sum = 0;
+  for (const char* name : {"normal.exr", "albedo.exr", "sigma.exr", "residual.exr", "status.png"}) {
+    const Result<double> seconds = write_alone_seconds(maps / name, folder / name);
+    if (!seconds) return seconds.error();
+    sum += *seconds;
+  }
+  return sum;
+}
+
+}  // namespace
+
+/// From eleven DNG files to maps on disk by `weft solve --quality fast`, next to LibRaw's unpacking of the
+/// same files and OpenEXR's and libpng's writing of the same maps, with the same threads: `ratio` is decode
+/// to write over their sum, without compression, syncing and hashing. Memory is the peak of the process.
+Result<Rows> end_to_end(const StudyOptions& options) {
+  const TemporaryFolder scratch;
+  const Size size = bench_size(options.megapixels);
+  const int threads = resolved_threads(options.threads);
+  simulator::Scene scene;
+  scene.camera.width = size.width;
+  scene.camera.height = size.height;
+  scene.camera.mm_per_pixel = 200.0 / size.width;
+  scene.geometry.kind = simulator::GeometryKind::kTwill;
+  scene.effects.near_light = true;
+  scene.effects.noise = true;
+  const fs::path folder = scratch.path() / "cloth.weft";
+  const auto simulated =
+      simulator::simulate_session(scene, folder, {.tiles = {.threads = threads}, .stop = {}, .progress = {}});
+  if (!simulated) return simulated.error();
+
+  // Without digests in the journal nothing is hashed while solving.
+  Result<Session> session = read_session(folder);
+  if (!session) return std::move(session).error();
+  std::vector<fs::path> files;
+  for (Shot& shot : session->shots) {
+    shot.sha256.clear();
+    files.push_back(session->path_of(shot));
+  }
+  if (Result<void> written = write_session(*session); !written) return std::move(written).error();
+
+  const Result<double> unpack = unpack_seconds(files, threads);
+  if (!unpack) return unpack.error();
+  double best = 0, peak = 0;
+  Json seconds;
+  fs::path maps;
+  for (int i = 0; i < 3; ++i) {
+    maps = scratch.path() / fmt::format("maps{}", i);
+    const Result<Json> solved = json_of_command(
+        fmt::format("'{}' solve '{}' -o '{}' --quality fast --no-previews --quiet --json --threads {}",
+                    (options.programs / "weft").string(), folder.string(), maps.string(), threads));
+    if (!solved) return solved.error();
+    const Json& s = (*solved)["seconds"];
+    const double work = s["read"].get<double>() + s["solve"].get<double>() + s["write"].get<double>();
+    if (i == 0 || work < best) {
+      best = work;
+      seconds = s;
+    }
+    peak = std::max(peak, (*solved)["peak_bytes"].get<double>());
+  }
+  const Result<double> write = write_seconds(maps, scratch.path());
+  if (!write) return write.error();
+  return Rows{{{"quality", "fast"},
+               {"megapixels", static_cast<double>(size.pixels()) * 1e-6},
+               {"threads", threads},
+               {"read_s", seconds["read"]},
+               {"solve_s", seconds["solve"]},
+               {"write_s", seconds["write"]},
+               {"decode_to_write_s", best},
+               {"unpack_alone_s", *unpack},
+               {"write_alone_s", *write},
+               {"ratio", best / (*unpack + *write)},
+               {"ns_per_pixel", best * 1e9 / static_cast<double>(size.pixels())},
+               {"peak_mb", peak / (1 << 20)}}};
 }
 
 }  // namespace weft::bench

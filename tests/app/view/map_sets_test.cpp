@@ -11,7 +11,7 @@
 
 #include "app/jobs/maps/maps.h"
 #include "app/server/rig_server.h"
-#include "bench/server/no_devices.h"
+#include "bench/server/served_rig.h"
 #include "core/files.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/view/asked_session.h"
