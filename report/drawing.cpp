@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/drawing.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -74,6 +76,11 @@ bool glyph_has(char32_t character, int x, int y) {
 }
 
 }  // namespace
+
+std::string css_colour(Colour c) {
+  const auto byte = [](float v) { return static_cast<int>(std::lround(255 * std::clamp(v, 0.0F, 1.0F))); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(c.r), byte(c.g), byte(c.b));
+}
 
 Picture blank_picture(Size size, Colour colour) {
   Picture picture(size, 3);

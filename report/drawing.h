@@ -18,6 +18,8 @@ struct Colour {
   float r = 0, g = 0, b = 0;
   friend bool operator==(const Colour&, const Colour&) = default;
 };
+/// "#rrggbb"
+std::string css_colour(Colour colour);
 
 inline constexpr Colour kBackground{0.11f, 0.11f, 0.12f};
 inline constexpr Colour kInk{0.92f, 0.92f, 0.90f};

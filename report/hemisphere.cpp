@@ -10,7 +10,6 @@
 
 #include "core/text.h"
 #include "core/vec.h"
-#include "report/html.h"
 #include "report/preview.h"
 
 namespace weft::report {

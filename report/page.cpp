@@ -3,16 +3,35 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+#include <utility>
 
+#include "core/json_document.h"
+#include "core/statistics.h"
 #include "core/text.h"
-#include "report/html.h"
 
 namespace weft::report {
 namespace {
 
-std::string paragraph(std::string_view text, std::string_view attributes = "") {
-  return fmt::format("<p{}>{}</p>\n", attributes, escape_markup(text));
+// RFC 4648, section 4.
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      group = group << 8 | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0U);
+    }
+    for (std::size_t j = 0; j < 4; ++j) {
+      out += i + j <= bytes.size() ? kDigits[group >> (18 - 6 * j) & 63U] : '=';
+    }
+  }
+  return out;
 }
 
 std::string sentence(std::string text) {
@@ -21,55 +40,97 @@ std::string sentence(std::string text) {
   return text.back() == '.' ? text : text + '.';
 }
 
-std::string row_of(const std::vector<std::string>& cells, const char* tag, bool is_alarm = false) {
-  std::string html = is_alarm ? "<tr class=\"alarm\">" : "<tr>";
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    html += fmt::format("<{0}{1}>{2}</{0}>", tag, i == 0 ? "" : " class=\"n\"", escape_markup(cells[i]));
+// Just over the 98th percentile of the finite values.
+double upper_end(std::vector<double> values) {
+  const double high = lower_quantile(finite(std::move(values)), 0.98);
+  return std::isnan(high) ? 1 : std::max(1.1 * high, 1e-9);
+}
+
+Json data_of(const Table& table) {
+  return {{"header", table.header}, {"rows", table.rows}, {"alarms", table.alarms}, {"bars", table.bars}};
+}
+
+Json data_of(const Svg& drawing) {
+  return {{"svg", drawing}};
+}
+
+Json data_of(const Png& picture) {
+  return {{"png", base64(picture.bytes)}};
+}
+
+Json data_of(const FrameMap& map) {
+  return {{"map",
+           {{"columns", map.columns},
+            {"values", map.values},
+            {"unit", map.unit},
+            {"least", map.least.value_or(0)},
+            {"most", map.most.value_or(upper_end(map.values))}}}};
+}
+
+Json data_of(const Arrows& drawing) {
+  Json all = Json::array();
+  for (const Arrow& a : drawing.arrows) all.push_back({a.x_px, a.y_px, a.dx_px, a.dy_px});
+  return {{"arrows",
+           {{"width", drawing.frame.width},
+            {"height", drawing.frame.height},
+            {"all", std::move(all)},
+            {"magnification", drawing.magnification}}}};
+}
+
+Json data_of(const Section& section) {
+  Json figures = Json::array();
+  for (const Figure& figure : section.figures) {
+    figures.push_back(std::visit([](const auto& drawing) { return data_of(drawing); }, figure.drawing));
+    figures.back()["label"] = figure.label;
   }
-  return html + "</tr>\n";
+  Json data = {{"title", section.title},
+               {"paragraphs", section.paragraphs},
+               {"figures", std::move(figures)},
+               {"note", section.note},
+               {"is_half", section.is_half}};
+  if (section.table) data["table"] = data_of(*section.table);
+  return data;
+}
+
+// JSON that may stand inside a script.
+std::string within_script(const Json& data) {
+  std::string text;
+  for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    c == '<' ? text += "\\u003c" : text += c;
+  }
+  return text;
+}
+
+// What says most, until a script draws all of it.
+std::string words_of(const Page& page) {
+  std::string html = fmt::format("<h1>{}</h1>\n", escape_markup(page.title));
+  for (const std::string& line : page.meta) html += fmt::format("<p>{}</p>\n", escape_markup(line));
+  html += fmt::format("<p>{}</p>\n", escape_markup(page.summary));
+  for (const Verdict& v : page.verdicts)
+    html += fmt::format("<p>{} {}</p>\n", escape_markup(v.text), escape_markup(v.remedy));
+  return html + "<p>Scripts draw the tables and figures of this page.</p>\n";
 }
 
 }  // namespace
 
-std::string verdict_box(const std::vector<Verdict>& verdicts, std::string_view otherwise) {
-  std::string body;
-  for (const Verdict& verdict : verdicts) {
-    body += paragraph(sentence(verdict.text));
-    if (!verdict.remedy.empty()) body += paragraph(sentence(verdict.remedy), " class=\"do\"");
+std::string html_of(Page page) {
+  page.summary = sentence(page.summary);
+  for (Verdict& verdict : page.verdicts) {
+    verdict.text = sentence(verdict.text);
+    verdict.remedy = sentence(verdict.remedy);
   }
-  if (verdicts.empty()) body = paragraph(otherwise);
-  return fmt::format("<div class=\"verdict{}\">\n{}</div>\n", verdicts.empty() ? "" : " alarm", body);
-}
-
-std::string html_of(const Table& table) {
-  std::string html = "<table>\n";
-  if (!table.header.empty()) html += row_of(table.header, "th");
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    html += row_of(table.rows[i], "td", table.alarms.count(i) != 0);
-  }
-  return html + "</table>\n";
-}
-
-std::string html_of(const Section& section) {
-  std::string body;
-  for (const std::string& text : section.paragraphs) body += paragraph(text);
-  if (section.table) body += html_of(*section.table);
-  std::string figures;
-  for (const Figure& figure : section.figures) {
-    figures += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", figure.svg,
-                           escape_markup(figure.label));
-  }
-  if (section.figures.size() > 1) figures = "<div class=\"two\">\n" + figures + "</div>\n";
-  return html_section(section.title, body + figures);
-}
-
-std::string html_of(const Page& page) {
-  const std::string summary = sentence(page.summary);
-  std::string body = fmt::format("<h1>{}</h1>\n", escape_markup(page.title));
-  if (!page.verdicts.empty()) body += paragraph(summary, " class=\"meta\"");
-  body += verdict_box(page.verdicts, summary);
-  for (const Section& section : page.sections) body += html_of(section);
-  return html_page(page.title, body);
+  Json data = {{"title", page.title},
+               {"meta", page.meta},
+               {"summary", page.summary},
+               {"verdicts", json_of(page.verdicts)},
+               {"sections", Json::array()}};
+  for (const Section& section : page.sections) data["sections"].push_back(data_of(section));
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<title>{}</title></head>\n<body><main>\n"
+      "{}</main>\n<script type=\"application/json\" id=\"report\">{}</script>\n"
+      "<script>{}</script></body></html>\n",
+      escape_markup(page.title), words_of(page), within_script(data), script());
 }
 
 }  // namespace weft::report

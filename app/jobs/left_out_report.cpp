@@ -8,8 +8,6 @@
 
 #include "core/field_json.h"
 #include "core/percent.h"
-#include "report/html.h"
-#include "report/page.h"
 
 namespace weft::app {
 namespace {
@@ -64,24 +62,23 @@ std::optional<Verdict> verdict_of(const LeftOutFacts& facts, bool of_session,
   return verdict;
 }
 
-std::string left_out_section(const Json& report, const std::string& noun) {
+report::Section left_out_section(const Json& report, const std::string& noun) {
   const auto found = report.find("check");
-  if (found == report.end()) return "";
+  if (found == report.end()) return {};
   const Result<LeftOutFacts> facts = read_fields<LeftOutFacts>(*found, "check");
-  if (!facts) return "";
+  if (!facts) return {};
   report::Table table = {{"", "median", "by noise", "rms", "by noise"}};
   table.rows.push_back(row_of("all", facts->all));
   for (const LeftOutLight& light : facts->lights) {
     table.rows.push_back(row_of(fmt::format("{} {}", noun, light.light), light.shares));
   }
-  return report::html_section(
-      "Lights left out and predicted",
-      html_of(table) +
-          fmt::format("<p class=\"note\">Each light was left out in turn and its reading predicted from the "
-                      "others, on patches that no stage was chosen by. Median: error over the reading; rms: "
-                      "over the brightness of the pixel. Beside each what noise alone would give, where it "
-                      "is known. {}</p>\n",
-                      kLeftOutBlindSpot));
+  return {.title = "Lights left out and predicted",
+          .table = std::move(table),
+          .note = fmt::format(
+              "Each light was left out in turn and its reading predicted from the others, on patches that no "
+              "stage was chosen by. Median: error over the reading; rms: over the brightness of the pixel. "
+              "Beside each what noise alone would give, where it is known. {}",
+              kLeftOutBlindSpot)};
 }
 
 std::string left_out_words(const LeftOutFacts& facts) {

@@ -7,6 +7,7 @@
 
 #include "core/left_out_facts.h"
 #include "core/verdict.h"
+#include "report/page.h"
 #include "solver/left_out/left_out.h"
 #include "solver/method.h"
 
@@ -26,7 +27,7 @@ std::optional<Verdict> verdict_of(const LeftOutFacts& facts, bool of_session,
                                   std::optional<solver::Level> level);
 
 /// A section of report.html from "check" of report.json; empty where there is none. `noun` is LED or Light.
-std::string left_out_section(const Json& report, const std::string& noun);
+report::Section left_out_section(const Json& report, const std::string& noun);
 
 /// Lines for the terminal.
 std::string left_out_words(const LeftOutFacts& facts);

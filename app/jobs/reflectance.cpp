@@ -11,9 +11,7 @@
 #include <utility>
 
 #include "app/jobs/gloss_maps.h"
-#include "core/text.h"
 #include "core/vec.h"
-#include "report/html.h"
 #include "report/plot_svg.h"
 
 namespace weft::app {
@@ -193,11 +191,12 @@ std::string lobe_words(const Json& cluster) {
 }
 
 // Its lobe over its readings, or why there is none.
-std::string cluster_section(const Json& cluster) {
+void add_cluster(const Json& cluster, report::Section& section) {
   if (!cluster["observable"].get<bool>()) {
-    return fmt::format("<p>Not observable: {}. To do: {}.</p>\n",
-                       escape_markup(cluster["why"].get<std::string>()),
-                       escape_markup(cluster["remedy"].get<std::string>()));
+    section.paragraphs.push_back(fmt::format("Not observable: {}. To do: {}.",
+                                             cluster["why"].get<std::string>(),
+                                             cluster["remedy"].get<std::string>()));
+    return;
   }
   report::PlotSeries readings = {.name = "readings"},
                      lobe = {.name = "lobe", .joined = true, .marked = false};
@@ -206,13 +205,14 @@ std::string cluster_section(const Json& cluster) {
     lobe.points.push_back({point[0].get<double>(), point[2].get<double>()});
   }
   std::ranges::sort(lobe.points, {}, &report::PlotPoint::x);
-  const std::string warning = cluster.contains("warning")
-                                  ? fmt::format("<p>Warning: {}. One lobe stands for all of it.</p>\n",
-                                                escape_markup(cluster["warning"].get<std::string>()))
-                                  : "";
-  return warning + report::plot_svg({.x_label = "normal to half-vector, degrees",
-                                     .y_label = "over the lobe's peak",
-                                     .series = {std::move(readings), std::move(lobe)}});
+  if (cluster.contains("warning")) {
+    section.paragraphs.push_back(
+        fmt::format("Warning: {}. One lobe stands for all of it.", cluster["warning"].get<std::string>()));
+  }
+  section.figures.push_back(
+      {lobe_words(cluster), report::plot_svg({.x_label = "normal to half-vector, degrees",
+                                              .y_label = "over the lobe's peak",
+                                              .series = {std::move(readings), std::move(lobe)}})});
 }
 
 }  // namespace
@@ -269,11 +269,13 @@ Json reflectance_said(const Json& document) {
   return {{"used", is_used}, {"says", words.empty() ? document["clusters"][0]["why"] : Json(words)}};
 }
 
-std::string reflectance_section(const Json& document) {
-  const std::string words = reflectance_words(reflectance_summary(document));
-  std::string body = words.empty() ? "" : fmt::format("<p>{}.</p>\n", escape_markup(words));
-  for (const Json& cluster : document["clusters"]) body += cluster_section(cluster);
-  return report::html_section("Gloss", body);
+report::Section reflectance_section(const Json& document) {
+  report::Section section = {.title = "Gloss"};
+  if (document.is_null()) return section;
+  if (const std::string words = reflectance_words(reflectance_summary(document)); !words.empty())
+    section.paragraphs.push_back(words + ".");
+  for (const Json& cluster : document["clusters"]) add_cluster(cluster, section);
+  return section;
 }
 
 }  // namespace weft::app

@@ -6,6 +6,7 @@
 #include "core/albedo_scale.h"
 #include "core/json_document.h"
 #include "pipeline/gloss.h"
+#include "report/page.h"
 
 // What a solve found of a cloth's reflectance, for reflectance.json, solve.json and people.
 
@@ -27,7 +28,7 @@ std::string reflectance_words(const Json& summary);
 /// What report.json says of it in words: `used`, and `says`, the lobes or why there is none.
 Json reflectance_said(const Json& document);
 
-/// The section of a report: the lobe drawn over the readings, and its numbers.
-std::string reflectance_section(const Json& document);
+/// The section of a report: the lobe drawn over the readings, and its numbers. Empty of null.
+report::Section reflectance_section(const Json& document);
 
 }  // namespace weft::app

@@ -552,12 +552,12 @@ Result<void> write_report(const fs::path& folder, const Json& report) {
        {"error.png", "error against the truth"},
        {"status_preview.png", "status"},
        {"reflectance.png", "lobe and yarns"}}};
-  std::vector<report::PagePicture> pictures;
+  std::vector<report::Figure> pictures;
   for (const auto& [name, label] : kPreviews) {
     if (!is_there(folder / name)) continue;
     Result<std::string> png = read_text(folder / name);
     if (!png) return std::move(png).error();
-    pictures.push_back({label, std::move(*png)});
+    pictures.push_back({label, report::Png{std::move(*png)}});
   }
   if (Result<void> ok = write_json(folder / "report.json", report); !ok) return ok;
   return write_file(folder / "report.html", report_page(report, pictures));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {defineConfig} from 'vite';
+import {build, defineConfig, type Plugin, type Rollup} from 'vite';
 
 const daemon = process.env.WEFT_DAEMON ?? 'http://127.0.0.1:8470';
 
@@ -8,7 +8,24 @@ function nameOf(module: string | null): string {
   return module?.match(/screens\/(\w+)\/screen/)?.[1] ?? '[name]';
 }
 
+/** Draws a report, which carries it (report/page.h): one file with its style. */
+const report: Plugin = {
+  name: 'report',
+  apply: 'build',
+  async generateBundle() {
+    const made = await build({
+      configFile: false,
+      logLevel: 'warn',
+      build: {target: 'es2022', write: false, rollupOptions: {input: 'src/report/main.tsx', output: {format: 'iife'}}},
+    });
+    for (const file of (made as Rollup.RollupOutput).output) {
+      if (file.type === 'chunk') this.emitFile({type: 'asset', fileName: 'report.js', source: file.code});
+    }
+  },
+};
+
 export default defineConfig({
+  plugins: [report],
   base: '/',
   // Neither data: addresses nor a script of vite's own: the daemon's policy refuses both.
   build: {

@@ -28,6 +28,11 @@ std::vector<std::string> drawn(std::string_view text) {
   return rows_of(picture);
 }
 
+TEST(CssColour, RoundsToBytesAndHoldsToTheirRange) {
+  EXPECT_EQ(css_colour({0, 0.5F, 1}), "#0080ff");
+  EXPECT_EQ(css_colour({-1, 2, 1 / 255.0F}), "#00ff01");
+}
+
 TEST(Drawing, WritesTextAsItsGlyphs) {
   const std::vector<std::string> wanted = {
       "#...#.#####........###........#####..##..",  //

@@ -7,8 +7,6 @@
 #include <limits>
 #include <string>
 
-#include "report/html.h"
-
 namespace weft::report {
 namespace {
 

@@ -25,7 +25,7 @@ TEST(CalibrationReport, IsAPageThatNeedsNoOtherFileAndItsTwin) {
   ASSERT_EQ(files.size(), 2U);
   EXPECT_EQ(files[0].name, "camera.html");
   EXPECT_THAT(files[0].bytes, HasSubstr("Camera of &lt;rig&gt;"));
-  EXPECT_THAT(files[0].bytes, HasSubstr("<td>a.dng</td>"));
+  EXPECT_THAT(files[0].bytes, HasSubstr("[\"a.dng\",\"0.1\"]"));
   EXPECT_THAT(files[0].bytes, HasSubstr("15 boards, 0.08 px."));
   EXPECT_THAT(files[0].bytes, Not(HasSubstr("src=\"http")));
   EXPECT_EQ(files[1].name, "camera.json");
@@ -39,7 +39,6 @@ TEST(CalibrationReport, SaysFirstWhatIsWrongAndWhatToDo) {
   CalibrationReport report = small_report();
   report.verdicts = {{"MISFIT", "chi-square is 4.2", "lock nothing"}};
   const std::string page = report_files(report)[0].bytes;
-  EXPECT_THAT(page, HasSubstr("verdict alarm"));
   EXPECT_LT(page.find("Chi-square is 4.2."), page.find("One left out."));
   EXPECT_THAT(page, HasSubstr("Lock nothing."));
 }

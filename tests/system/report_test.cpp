@@ -171,8 +171,7 @@ TEST_F(Report, AloneTellsThatTwoLedsAreSwapped) {
   EXPECT_EQ(document["warnings"][0]["name"], "LEDS_EXCHANGED");
   const std::string page = bytes_of(work_ / "maps" / "report.html");
   EXPECT_THAT(page, HasSubstr(sentence));
-  EXPECT_THAT(page, HasSubstr("data:image/png;base64,iVBORw0KGgo"));
-  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, HasSubstr("\"png\":\"iVBORw0KGgo"));
 }
 
 TEST_F(Report, WarningsAreAnExitCodeUnderStrict) {
@@ -192,7 +191,7 @@ TEST_F(Report, OfAHealthyScanSaysThatNothingStandsOut) {
   EXPECT_LT(document["sigma_normal_deg"]["median"], 1);
   const std::string page = bytes_of(work_ / "maps" / "report.html");
   EXPECT_THAT(page, HasSubstr("Nothing stands out"));
-  EXPECT_THAT(page, Not(HasSubstr("data:image/png"))) << "there are no previews";
+  EXPECT_THAT(page, Not(HasSubstr("\"png\":"))) << "there are no previews";
 }
 
 TEST_F(Report, OfPhotographsWithoutANoiseModel) {
@@ -292,7 +291,7 @@ TEST(Budget, NamesTheModelAndTheCalibrationWhereItHasACovariance) {
     EXPECT_EQ((*row)["value"], parts[part]["median"]) << source;
     EXPECT_EQ((*row)["unit"], "deg");
   }
-  EXPECT_THAT(bytes_of(work / "maps" / "report.html"), HasSubstr("<td>calibration<br>"));
+  EXPECT_THAT(bytes_of(work / "maps" / "report.html"), HasSubstr("[\"calibration\\n"));
 }
 
 // Ten shots of which the fifth has moved, at a cost.
@@ -486,12 +485,12 @@ TEST(ReportPage, LeavesOutWhatIsNotThereAndEscapesWhatIs) {
                        {"seconds", {{"read", 1.5}}}};
   const std::string page = app::report_page(report, {});
   EXPECT_THAT(page, HasSubstr("wool &amp; &lt;b&gt;silk&lt;/b&gt;"));
+  EXPECT_THAT(page, Not(HasSubstr("<b>")));
   EXPECT_THAT(page, HasSubstr("25.0 %"));
   EXPECT_THAT(page, HasSubstr("1.50 s"));
   EXPECT_THAT(page, Not(HasSubstr("Gates")));
   EXPECT_THAT(page, Not(HasSubstr("Conditions")));
-  EXPECT_THAT(app::report_page(report, {{"a", "\x01"}, {"b", "Ma"}, {"c", "Man"}}),
-              testing::AllOf(HasSubstr("base64,AQ=="), HasSubstr("base64,TWE="), HasSubstr("base64,TWFu")));
+  EXPECT_THAT(app::report_page(report, {{"a", report::Png{"Ma"}}}), HasSubstr("TWE="));
 }
 
 }  // namespace

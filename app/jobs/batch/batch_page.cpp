@@ -11,9 +11,6 @@
 
 #include "app/jobs/report.h"
 #include "core/solve.h"
-#include "core/text.h"
-#include "report/html.h"
-#include "report/page_picture.h"
 
 namespace weft::app {
 namespace {
@@ -39,6 +36,13 @@ std::string cloth_in(const batch::Job& job) {
 
 std::string sessions_in_words(int count) {
   return fmt::format("{} session{}", count, count == 1 ? "" : "s");
+}
+
+// Whether it shows as many as it may, and then says so.
+bool is_full(report::Section& section) {
+  if (section.table->rows.size() < kMostRows) return false;
+  section.paragraphs.push_back(fmt::format("The first {} are shown; report.json has all.", kMostRows));
+  return true;
 }
 
 report::Section done_section(const BatchState& state) {
@@ -80,10 +84,7 @@ std::optional<report::Section> warned_section(const BatchState& state) {
   report::Section section = {.title = "Solved, with warnings"};
   section.table = report::Table{.header = {"session", "solved", "expected", "warnings"}};
   for (const std::size_t index : state.summary.warned) {
-    if (section.table->rows.size() == kMostRows) {
-      section.paragraphs.push_back(fmt::format("The first {} are shown; report.json has all.", kMostRows));
-      break;
-    }
+    if (is_full(section)) break;
     const batch::Outcome& outcome = *state.rows[index].result;
     if (outcome.solved_share() < kLeastSolved) section.table->alarms.insert(section.table->rows.size());
     section.table->rows.push_back(
@@ -137,10 +138,7 @@ report::Section changes_section(const BatchState& state) {
                                            "sigma, degrees", "unsolved", "worse in"}};
   section.is_answer = true;
   for (const std::size_t index : s.changed) {
-    if (section.table->rows.size() == kMostRows) {
-      section.paragraphs.push_back(fmt::format("The first {} are shown; report.json has all.", kMostRows));
-      break;
-    }
+    if (is_full(section)) break;
     const Row& row = state.rows[index];
     if (batch::regression_weight(*row.result->change) > 0)
       section.table->alarms.insert(section.table->rows.size());
@@ -154,10 +152,7 @@ std::optional<report::Section> left_out_section(const BatchState& state) {
   report::Section section = {.title = "Left out by the plan"};
   section.table = report::Table{.header = {"session", "why", ""}};
   for (const batch::LeftOut& left : state.plan.left_out) {
-    if (section.table->rows.size() == kMostRows) {
-      section.paragraphs.push_back(fmt::format("The first {} are shown; report.json has all.", kMostRows));
-      break;
-    }
+    if (is_full(section)) break;
     section.table->rows.push_back(
         {name_in(left.session), batch::kReasonNames[static_cast<std::size_t>(left.reason)], left.said});
   }
@@ -229,19 +224,20 @@ std::vector<report::Section> sections_of(const BatchState& state) {
 
 std::string batch_page(const BatchState& state, const std::vector<DrawnChange>& drawn) {
   const batch::Summary& s = state.summary;
-  const std::string title = fmt::format("Batch {}", state.plan.header.id);
-  std::string body = fmt::format("<h1>{}</h1>\n<p class=\"meta\">{}: {} of {} solved</p>\n", title,
-                                 escape_markup(state.plan.header.archive), s.solved + s.there,
-                                 sessions_in_words(state.plan.header.sessions));
-  body += report::verdict_box(verdicts_of(state), "All is solved, and nothing became worse.");
-  for (const report::Section& section : sections_of(state)) {
-    body += report::html_of(section);
-    if (!section.is_answer || drawn.empty()) continue;
-    for (const DrawnChange& each : drawn)
-      body +=
-          report::picture_row({{name_in(each.session) + ": before, after, after relit, change", each.png}});
+  const batch::Header& header = state.plan.header;
+  report::Page page = {.title = fmt::format("Batch {}", header.id),
+                       .meta = {fmt::format("{}: {} of {} solved", header.archive, s.solved + s.there,
+                                            sessions_in_words(header.sessions))},
+                       .verdicts = verdicts_of(state),
+                       .sections = sections_of(state)};
+  if (page.verdicts.empty()) page.summary = "All is solved, and nothing became worse.";
+  const auto answer = std::ranges::find(page.sections, true, &report::Section::is_answer);
+  for (const DrawnChange& each : drawn) {
+    if (answer == page.sections.end()) break;
+    answer->figures.push_back(
+        {name_in(each.session) + ": before, after, after relit, change", report::Png{each.png}});
   }
-  return report::html_page(title, body);
+  return html_of(page);
 }
 
 }  // namespace weft::app

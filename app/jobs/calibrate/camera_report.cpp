@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/figures.h"
-
 namespace weft::app {
 namespace {
 
@@ -222,7 +220,7 @@ report::Figure residual_arrows(const CameraFitFacts& facts) {
       fmt::format(
           "Where corners were seen against where they are predicted, {:g} times as long; rms {:.3f} pixels",
           magnification, facts.fit.rms_px),
-      report::arrows_svg(facts.fit.camera.size, arrows, magnification)};
+      report::Arrows{facts.fit.camera.size, std::move(arrows), magnification}};
 }
 
 Json numbers_of(const CameraFitFacts& facts, const Figures& f) {
@@ -342,9 +340,8 @@ CalibrationReport camera_report(const CameraFitFacts& facts) {
       {"Coverage of the frame",
        {fmt::format("{:.0f} percent of the frame's parts have corners in them.", 100 * f.coverage)},
        {},
-       {{"Corners seen", report::frame_map_svg(coverage)},
-        {"Predicted standard deviation of a pixel's place on the table",
-         report::frame_map_svg(f.table_sigma_mm)}}});
+       {{"Corners seen", std::move(coverage)},
+        {"Predicted standard deviation of a pixel's place on the table", f.table_sigma_mm}}});
   report.sections.push_back({"Photographs", {}, board_table(facts)});
   report.sections.push_back({"Distortion terms",
                              {"Error on boards that were not fitted to, five folds. Terms beyond k1 and k2 "

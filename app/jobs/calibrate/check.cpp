@@ -23,7 +23,6 @@
 #include "core/files.h"
 #include "core/iso_time.h"
 #include "core/toml/toml_keys.h"
-#include "report/figures.h"
 
 namespace weft::app {
 namespace {
@@ -264,7 +263,7 @@ CalibrationReport sheets_report(const std::vector<CheckedSheet>& sheets, const C
     section.table->rows.push_back(row_of(sheet));
     section.figures.push_back(
         {fmt::format("Angle between {} as it is solved and as it lies", sheet.name),
-         report::frame_map_svg({sheet.columns, sheet.rows, sheet.check.error_deg, "degrees"})});
+         report::FrameMap{sheet.columns, sheet.rows, sheet.check.error_deg, "degrees"}});
     report.numbers["sheets"].push_back(numbers_of(sheet));
     for (Verdict& verdict : verdicts_of(sheet, options.limits)) report.verdicts.push_back(std::move(verdict));
   }

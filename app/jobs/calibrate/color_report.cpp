@@ -21,22 +21,15 @@ double most_of(const std::vector<double>& values) {
 }
 
 report::Section patches_section(const ColorMeasurement& color) {
-  report::Section section = {"Patches"};
-  section.paragraphs = {
-      fmt::format("Each patch as it should be ({}) on the left, and as it came out on the right; "
-                  "colours outside the screen's are clipped.",
-                  color.reference)};
-  section.figures = {{"reference | measured", patches_svg(color)}};
-  return section;
+  return {.title = "Patches",
+          .paragraphs = {fmt::format("Each patch as it should be ({}) on the left, and as it came out on the "
+                                     "right; colours outside the screen's are clipped.",
+                                     color.reference)},
+          .figures = {{"reference | measured", patches_svg(color)}}};
 }
 
 report::Section differences_section(const ColorMeasurement& color) {
   const bool has_curve = !color.by_curve.empty();
-  report::Section section = {"Colour differences"};
-  section.paragraphs = {
-      "CIEDE2000 (Sharma, Wu, Dalal 2005) of every patch: the camera's own channels with the scale that "
-      "suits "
-      "them best; after the matrix; and held out, by the matrix fitted to all other patches."};
   report::Table table = {{"patch", "before", "after", "held out"}, {}};
   if (has_curve) table.header.insert(table.header.end(), {"curve", "curve, held out"});
   const auto row_of = [&](const std::string& name, const auto& value) {
@@ -56,16 +49,15 @@ report::Section differences_section(const ColorMeasurement& color) {
     row_of(fmt::format("{} {}", color.patches[i] + 1, calibration::patch_name(color.patches[i])),
            [&](const std::vector<double>& list) { return list[i]; });
   }
-  section.table = std::move(table);
-  return section;
+  return {
+      .title = "Colour differences",
+      .paragraphs =
+          {"CIEDE2000 (Sharma, Wu, Dalal 2005) of every patch: the camera's own channels with the scale that "
+           "suits them best; after the matrix; and held out, by the matrix fitted to all other patches."},
+      .table = std::move(table)};
 }
 
 report::Section matrix_section(const ColorMeasurement& color) {
-  report::Section section = {"Matrix"};
-  section.paragraphs = {
-      "Linear Rec.709 from the camera's channels after white balance; rows sum to 1, so that white stays "
-      "white. "
-      "Standard deviations in brackets."};
   report::Table table = {{"", "red", "green", "blue"}, {}};
   const char* const names[] = {"red", "green", "blue"};
   for (std::size_t r = 0; r < 3; ++r) {
@@ -77,8 +69,10 @@ report::Section matrix_section(const ColorMeasurement& color) {
     }
     table.rows.push_back(std::move(row));
   }
-  section.table = std::move(table);
-  return section;
+  return {.title = "Matrix",
+          .paragraphs = {"Linear Rec.709 from the camera's channels after white balance; rows sum to 1, so "
+                         "that white stays white. Standard deviations in brackets."},
+          .table = std::move(table)};
 }
 
 }  // namespace
@@ -92,16 +86,16 @@ double mean_of(const std::vector<double>& values) {
 std::string patches_svg(const ColorMeasurement& color) {
   constexpr int kSide = 60, kStep = 66;
   std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n"
-      "<rect width=\"{0}\" height=\"{1}\" fill=\"#222\"/>\n",
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+      "height=\"{1}\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#222\"/>\n",
       calibration::kChartColumns * kStep + 6, calibration::kChartRows * kStep + 6);
   for (std::size_t i = 0; i < color.patches.size(); ++i) {
     const int x = 6 + color.patches[i] % calibration::kChartColumns * kStep;
     const int y = 6 + color.patches[i] / calibration::kChartColumns * kStep;
     const Rgb measured = rec709_of_camera(color.transform, color.samples[i].camera);
     svg += fmt::format(
-        "<rect x=\"{0}\" y=\"{2}\" width=\"{3}\" height=\"{4}\" fill=\"{5}\"/>"
-        "<rect x=\"{1}\" y=\"{2}\" width=\"{3}\" height=\"{4}\" fill=\"{6}\"/>\n",
+        "<rect x=\"{0}\" y=\"{2}\" width=\"{3}\" height=\"{4}\" fill=\"{5}\"/><rect x=\"{1}\" y=\"{2}\" "
+        "width=\"{3}\" height=\"{4}\" fill=\"{6}\"/>\n",
         x, x + kSide / 2, y, kSide / 2, kSide, css(color.samples[i].reference), css(measured));
   }
   return svg + "</svg>\n";

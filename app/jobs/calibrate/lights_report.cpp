@@ -7,8 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "report/figures.h"
-
 namespace weft::app {
 namespace {
 
@@ -129,12 +127,10 @@ report::Section error_section(const LightsEvidence& e) {
                   "{:.3f} degrees at the "
                   "centre of the frame and {:.3f} in its worst corner.",
                   p.centre_deg, p.corner_deg));
-  section.figures.push_back(
-      {"Level cloth, degrees over the frame",
-       report::frame_map_svg({p.grid.columns, p.grid.rows, p.level_deg, "deg", 0, {}})});
-  section.figures.push_back(
-      {"Slope of 20 degrees, degrees over the frame",
-       report::frame_map_svg({p.grid.columns, p.grid.rows, p.slope_deg, "deg", 0, {}})});
+  section.figures.push_back({"Level cloth, degrees over the frame",
+                             report::FrameMap{p.grid.columns, p.grid.rows, p.level_deg, "deg", 0, {}}});
+  section.figures.push_back({"Slope of 20 degrees, degrees over the frame",
+                             report::FrameMap{p.grid.columns, p.grid.rows, p.slope_deg, "deg", 0, {}}});
   return section;
 }
 
@@ -157,9 +153,8 @@ report::Section residual_section(const LightsEvidence& e) {
     }
     for (std::size_t cell = 0; cell < grid.cells(); ++cell)
       sum[cell] = count[cell] > 0 ? sum[cell] / count[cell] : std::numeric_limits<double>::quiet_NaN();
-    section.figures.push_back(
-        {fmt::format("LED {}", k + 1),
-         report::frame_map_svg({grid.columns, grid.rows, std::move(sum), "%", -0.5, 0.5})});
+    section.figures.push_back({fmt::format("LED {}", k + 1),
+                               report::FrameMap{grid.columns, grid.rows, std::move(sum), "%", -0.5, 0.5}});
   }
   return section;
 }
@@ -179,9 +174,8 @@ report::Section per_pixel_section(const LightsEvidence& e) {
         {fmt::format("{}", k + 1),
          fmt::format("{:.3f}", *std::max_element(p.apart_deg[k].begin(), p.apart_deg[k].end())),
          fmt::format("{:.3f}", std::sqrt(sum))});
-    section.figures.push_back(
-        {fmt::format("LED {}: degrees between map and model", k + 1),
-         report::frame_map_svg({p.grid.columns, p.grid.rows, p.apart_deg[k], "deg", 0, {}})});
+    section.figures.push_back({fmt::format("LED {}: degrees between map and model", k + 1),
+                               report::FrameMap{p.grid.columns, p.grid.rows, p.apart_deg[k], "deg", 0, {}}});
   }
   return section;
 }

@@ -127,14 +127,13 @@ report::Section summary_section(const ResponseFrames& frames, const ResponseMeas
                           percent(m.superposition->departure(c), 3),
                           percent(m.superposition->sigma_departure(c), 3)});
   }
-  table.rows.push_back({"hot photosites", std::to_string(frames.hot), ""});
-  table.rows.push_back({"dead photosites", std::to_string(frames.dead), ""});
-  table.rows.push_back({"light from frame to frame", percent(m.drift, 3), ""});
-  table.rows.push_back({"pairs of frames", std::to_string(frames.pairs), ""});
-  table.rows.push_back({"frames left out, being full", std::to_string(frames.full.size()), ""});
-  report::Section section = {"Measured"};
-  section.table = std::move(table);
-  return section;
+  table.rows.insert(table.rows.end(),
+                    {{"hot photosites", std::to_string(frames.hot), ""},
+                     {"dead photosites", std::to_string(frames.dead), ""},
+                     {"light from frame to frame", percent(m.drift, 3), ""},
+                     {"pairs of frames", std::to_string(frames.pairs), ""},
+                     {"frames left out, being full", std::to_string(frames.full.size()), ""}});
+  return {.title = "Measured", .table = std::move(table)};
 }
 
 report::Section transfer_section(const ResponseMeasurement& m) {
@@ -160,11 +159,11 @@ report::Section transfer_section(const ResponseMeasurement& m) {
 
 report::Section linearity_section(const calibration::Superposition& s) {
   report::Section section = {"Linearity"};
-  section.paragraphs = {fmt::format(
-      "What the light of two LEDs one by one has over that of both together, with what the LEDs drifted "
-      "taken "
-      "out. Chi-square a degree of freedom: {:.2f}; well above 1 something else changed between the frames.",
-      s.chi_square_per_freedom)};
+  section.paragraphs = {
+      fmt::format("What the light of two LEDs one by one has over that of both together, with what the LEDs "
+                  "drifted taken out. Chi-square a degree of freedom: {:.2f}; well above 1 something else "
+                  "changed between the frames.",
+                  s.chi_square_per_freedom)};
   report::Table table = {{"channel", "a", "b", "seen up to", "off a line before", "left, by the fit's sigma"},
                          {}};
   for (std::size_t c = 0; c < 3; ++c) {
@@ -185,10 +184,6 @@ report::Section linearity_section(const calibration::Superposition& s) {
 }
 
 report::Section balance_section(const ResponseMeasurement& m, const Calibration* from) {
-  report::Section section = {"White balance of the LEDs"};
-  section.paragraphs = {
-      "Light by channel over that in green, mean over the frame: that of the LED where the scene is white or "
-      "grey, and of the same scene differences from LED to LED are those of the LEDs."};
   report::Table table = {{"LED", "red / green", "blue / green", "in the calibration before"}, {}};
   const NearLights* lights =
       from != nullptr && from->lights ? std::get_if<NearLights>(&*from->lights) : nullptr;
@@ -202,14 +197,14 @@ report::Section balance_section(const ResponseMeasurement& m, const Calibration*
     table.rows.push_back({fmt::format("LED {}", b.led), fmt::format("{:.4f}", b.light[0] / b.light[1]),
                           fmt::format("{:.4f}", b.light[2] / b.light[1]), before});
   }
-  section.table = std::move(table);
-  return section;
+  return {.title = "White balance of the LEDs",
+          .paragraphs =
+              {"Light by channel over that in green, mean over the frame: that of the LED where the scene is "
+               "white or grey, and of the same scene differences from LED to LED are those of the LEDs."},
+          .table = std::move(table)};
 }
 
 report::Section ratio_section(const ResponseMeasurement& m) {
-  report::Section section = {"Exposure times"};
-  section.paragraphs = {
-      "Light gathered by the longer over the shorter exposure, against what their times say."};
   report::Table table = {{"longer, us", "shorter, us", "measured", "by the times", "among LEDs"}, {}};
   for (const calibration::MeasuredRatio& r : m.ratios) {
     table.rows.push_back({fmt::format("{:.0f}", r.ratio.exposure_us),
@@ -217,39 +212,39 @@ report::Section ratio_section(const ResponseMeasurement& m) {
                           fmt::format("{:.5f}", r.ratio.exposure_us / r.ratio.to_exposure_us),
                           percent(r.scatter, 3)});
   }
-  section.table = std::move(table);
-  return section;
+  return {
+      .title = "Exposure times",
+      .paragraphs = {"Light gathered by the longer over the shorter exposure, against what their times say."},
+      .table = std::move(table)};
 }
 
 report::Section scale_section(const ScaleReading& scale) {
-  report::Section section = {"Grey scale"};
-  section.paragraphs = {fmt::format(
-      "Each patch against its reflectance, light along the scale fitted as a parabola ({:+.1f} percent from "
-      "end to end). Off by {:.2f} percent rms before the correction of linearity, by {:.2f} after. At its "
-      "middle a perfect white would be at {:.3f}, {:.3f}, {:.3f} of full scale.",
-      100 * scale.corrected.shading, scale.straight.rms_percent, scale.corrected.rms_percent,
-      scale.corrected.v_of_white[0], scale.corrected.v_of_white[1], scale.corrected.v_of_white[2])};
   report::Table table = {{"patch", "reflectance", "off before, %", "off after, %"}, {}};
   for (std::size_t i = 0; i < scale.reflectances.size(); ++i) {
     table.rows.push_back({std::to_string(i + 1), fmt::format("{:.4f}", scale.reflectances[i]),
                           fmt::format("{:+.2f}", scale.straight.off_percent[i]),
                           fmt::format("{:+.2f}", scale.corrected.off_percent[i])});
   }
-  section.table = std::move(table);
-  return section;
+  return {.title = "Grey scale",
+          .paragraphs = {fmt::format(
+              "Each patch against its reflectance, light along the scale fitted as a parabola ({:+.1f} "
+              "percent from end to end). Off by {:.2f} percent rms before the correction of linearity, by "
+              "{:.2f} after. At its middle a perfect white would be at {:.3f}, {:.3f}, {:.3f} of full scale.",
+              100 * scale.corrected.shading, scale.straight.rms_percent, scale.corrected.rms_percent,
+              scale.corrected.v_of_white[0], scale.corrected.v_of_white[1], scale.corrected.v_of_white[2])},
+          .table = std::move(table)};
 }
 
 report::Section veil_section(const TrapReading& trap) {
-  report::Section section = {"Veil"};
-  section.paragraphs = {fmt::format(
-      "A black trap in white paper shows {} ± {} of the light around it: what the lens scatters over the "
-      "frame. It is taken from the readings of every scan and calibration from here on, spread by a "
-      "Gaussian of {} frame diagonals, which one trap cannot measure.",
-      percent(trap.veil.share, 3), percent(trap.veil.sigma_share, 3), trap.veil.spread)};
   report::Table table = {{"channel", "share of the light"}, {}};
   for (std::size_t c = 0; c < 3; ++c) table.rows.push_back({kChannels[c], percent(trap.share_rgb[c], 3)});
-  section.table = std::move(table);
-  return section;
+  return {.title = "Veil",
+          .paragraphs = {fmt::format(
+              "A black trap in white paper shows {} ± {} of the light around it: what the lens scatters over "
+              "the frame. It is taken from the readings of every scan and calibration from here on, spread "
+              "by a Gaussian of {} frame diagonals, which one trap cannot measure.",
+              percent(trap.veil.share, 3), percent(trap.veil.sigma_share, 3), trap.veil.spread)},
+          .table = std::move(table)};
 }
 
 Json numbers_of(const ResponseFrames& frames, const ResponseMeasurement& m,
@@ -321,12 +316,11 @@ std::vector<Verdict> measurement_verdicts(const ResponseMeasurement& m) {
            "add longer exposures, until two LEDs together are nearly full"});
     }
     if (m.superposition->chi_square_per_freedom > kPoorFit) {
-      verdicts.push_back(
-          {"LIGHT_NOT_STEADY",
-           fmt::format("light adds up worse than its noise allows (chi-square {:.1f} a degree of freedom): "
-                       "something moved, or the room's light changed",
-                       m.superposition->chi_square_per_freedom),
-           "take the frames again in a dark room without touching the scene"});
+      verdicts.push_back({"LIGHT_NOT_STEADY",
+                          fmt::format("light adds up worse than its noise allows (chi-square {:.1f} a degree "
+                                      "of freedom): something moved, or the room's light changed",
+                                      m.superposition->chi_square_per_freedom),
+                          "take the frames again in a dark room without touching the scene"});
     }
   }
   if (m.black_from == BlackFrom::kFile) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,11 +12,8 @@
 #include "app/jobs/maps/session_sets.h"
 #include "core/field_json.h"
 #include "core/files.h"
-#include "core/text.h"
 #include "core/verdict.h"
-#include "report/html.h"
 #include "report/page.h"
-#include "report/page_picture.h"
 
 namespace weft::app {
 namespace {
@@ -80,7 +79,7 @@ report::Table table_of_steps(const Json& steps) {
   return table;
 }
 
-Result<std::string> pictures_of(const fs::path& folder, const Json& document) {
+Result<std::vector<report::Figure>> pictures_of(const fs::path& folder, const Json& document) {
   std::vector<std::pair<std::string, std::string>> shown;
   for (const Json& step : document["steps"]) {
     if (step.contains("facts") && step["facts"].contains("picture"))
@@ -98,38 +97,38 @@ Result<std::string> pictures_of(const fs::path& folder, const Json& document) {
     if (check.contains("picture"))
       shown.emplace_back(check["picture"].get<std::string>(), check["name"].get<std::string>());
   }
-  std::vector<report::PagePicture> pictures;
+  std::vector<report::Figure> pictures;
   for (const auto& [file, label] : shown) {
     Result<std::string> png = read_text(folder / file);
-    if (!png) return png;
-    pictures.push_back({label, std::move(*png)});
+    if (!png) return png.error();
+    pictures.push_back({label, report::Png{std::move(*png)}});
   }
-  return report::picture_row(pictures);
+  return pictures;
 }
 
 }  // namespace
 
 Result<void> write_maps_page(const fs::path& folder, const Json& document) {
-  const Result<std::vector<Verdict>> verdicts = read_list<Verdict>(document["verdicts"], "maps.json");
+  Result<std::vector<Verdict>> verdicts = read_list<Verdict>(document["verdicts"], "maps.json");
   if (!verdicts) return verdicts.error();
-  const Result<std::string> pictures = pictures_of(folder, document);
+  Result<std::vector<report::Figure>> pictures = pictures_of(folder, document);
   if (!pictures) return pictures.error();
   const int width = document["width"].get<int>(), height = document["height"].get<int>();
   const double mm = document["mm_per_pixel"].get<double>();
-  std::string body = fmt::format(
-      "<h1>Maps</h1>\n<p class=\"meta\">{} × {} pixels of {:.4g} mm: {:.4g} × {:.4g} mm{}</p>\n", width,
-      height, mm, width * mm, height * mm, document["is_tile"].get<bool>() ? ", a tile" : "");
-  for (const std::string& line : source_lines(document))
-    body += fmt::format("<p class=\"meta\">{}</p>\n", escape_markup(line));
-  body += report::verdict_box(*verdicts, "Nothing speaks against them.");
-  body += *pictures;
+  report::Page page = {
+      .title = "Maps",
+      .meta = {fmt::format("{} × {} pixels of {:.4g} mm: {:.4g} × {:.4g} mm{}", width, height, mm, width * mm,
+                           height * mm, document["is_tile"].get<bool>() ? ", a tile" : "")},
+      .verdicts = std::move(*verdicts),
+      .sections = {{.figures = std::move(*pictures)}}};
+  std::ranges::copy(source_lines(document), std::back_inserter(page.meta));
+  if (page.verdicts.empty()) page.summary = "Nothing speaks against them.";
   if (!document["maps"].empty())
-    body += report::html_of(report::Section{.title = "Derived maps", .table = table_of(document["maps"])});
-  body += report::html_of(report::Section{.title = "Checks", .table = table_of_checks(document["checks"])});
+    page.sections.push_back({.title = "Derived maps", .table = table_of(document["maps"])});
+  page.sections.push_back({.title = "Checks", .table = table_of_checks(document["checks"])});
   if (!document["steps"].empty())
-    body +=
-        report::html_of(report::Section{.title = "Finishing", .table = table_of_steps(document["steps"])});
-  return write_file(folder / "report.html", report::html_page("Maps", body));
+    page.sections.push_back({.title = "Finishing", .table = table_of_steps(document["steps"])});
+  return write_file(folder / "report.html", html_of(page));
 }
 
 }  // namespace weft::app

@@ -186,7 +186,7 @@ TEST(ReflectanceWords, AreOfBothMaterials) {
   EXPECT_EQ(reflectance_words(summary),
             "two materials: anisotropic-ggx, roughness 0.400 across the yarn and 0.100 along it, f0 0.050; "
             "ggx, roughness 0.160, f0 0.060; solved with it: 100 percent of the frame");
-  EXPECT_THAT(reflectance_section(document), testing::HasSubstr("two materials"));
+  EXPECT_THAT(reflectance_section(document).paragraphs.at(0), testing::HasSubstr("two materials"));
   EXPECT_EQ(reflectance_said(document), Json({{"used", true}, {"says", reflectance_words(summary)}}));
 }
 
@@ -219,7 +219,7 @@ TEST(ReflectanceWords, SayWhereRoughnessChanges) {
   const std::string warning =
       "the cloth's roughness changes across the frame: 0.200 at the upper left, 0.260 at the lower right";
   EXPECT_EQ(cluster["warning"], warning);
-  EXPECT_THAT(reflectance_section(document), testing::HasSubstr(warning));
+  EXPECT_THAT(reflectance_section(document).paragraphs.at(1), testing::HasSubstr(warning));
   facts.lobes[0].parts.pop_back();
   EXPECT_FALSE(reflectance_document(facts, AlbedoScale::kAbsolute)["clusters"][0].contains("warning"));
 }
@@ -230,7 +230,7 @@ TEST(ReflectanceWords, AreNoneWhereNoLobeWasMeasuredAndTheSectionSaysWhy) {
   facts.lobes[0].refusal = solver::LobeRefusal::kLambertFits;
   const Json document = reflectance_document(facts, AlbedoScale::kRelative);
   EXPECT_EQ(reflectance_words(reflectance_summary(document)), "");
-  EXPECT_THAT(reflectance_section(document), testing::HasSubstr("Not observable"));
+  EXPECT_THAT(reflectance_section(document).paragraphs.at(0), testing::HasSubstr("Not observable"));
   const Json said = reflectance_said(document);
   EXPECT_EQ(said["used"], false);
   EXPECT_THAT(said["says"], testing::HasSubstr("Lambert"));

@@ -5,7 +5,7 @@ interface TableProps {
   /** What it is of, for who hears it read. */
   caption: string;
   heads: readonly ComponentChildren[];
-  rows: readonly {key: string | number; cells: readonly ComponentChildren[]}[];
+  rows: readonly {key: string | number; isAlarm?: boolean; cells: readonly ComponentChildren[]}[];
 }
 
 /** Rows whose first cell names them. */
@@ -17,8 +17,8 @@ export function Table({caption, heads, rows}: TableProps) {
         <tr>{heads.map((head, index) => <th key={index} scope="col">{head}</th>)}</tr>
       </thead>
       <tbody>
-        {rows.map(({key, cells: [name, ...cells]}) => (
-          <tr key={key}>
+        {rows.map(({key, isAlarm, cells: [name, ...cells]}) => (
+          <tr key={key} class={isAlarm ? 'alarm' : undefined}>
             <th scope="row">{name}</th>
             {cells.map((cell, index) => <td key={index}>{cell}</td>)}
           </tr>

@@ -34,7 +34,12 @@ test('all of it is at most 121 kB', () => {
   expect(kilobytes, `${kilobytes.toFixed(1)} kB`).toBeLessThan(121);
 });
 
+test('what draws a report, which each report carries, is at most 25 kB', () => {
+  const kilobytes = fs.statSync(path.join(dist, 'report.js')).size / 1000;
+  expect(kilobytes, `${kilobytes.toFixed(1)} kB`).toBeLessThan(25);
+});
+
 test('nothing of it names another host', () => {
-  const others = files.filter((file) => /https?:\/\/(?!www\.w3\.org\/)[a-z]/.test(fs.readFileSync(path.join(dist, file), 'utf8')));
+  const others = [...files, 'report.js'].filter((file) => /https?:\/\/(?!www\.w3\.org\/)[a-z]/.test(fs.readFileSync(path.join(dist, file), 'utf8')));
   expect(others).toEqual([]);
 });

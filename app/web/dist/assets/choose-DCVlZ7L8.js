@@ -1,1 +1,0 @@
-import{E as e}from"./index-C-fvmfRv.js";import{c as n}from"./plan-FwH4Pj2B.js";function r(o,s){sessionStorage.setItem(n,JSON.stringify({sessions:o,calibration:s})),e("/batches?plan=chosen")}export{r as p};
