@@ -10,7 +10,6 @@
 #include <string_view>
 #include <utility>
 
-#include "core/json_document.h"
 #include "core/statistics.h"
 #include "core/text.h"
 
@@ -92,6 +91,11 @@ Json data_of(const Section& section) {
   return data;
 }
 
+bool says_something(const Section& section) {
+  return !section.paragraphs.empty() || !section.figures.empty() ||
+         (section.table && !section.table->rows.empty());
+}
+
 // JSON that may stand inside a script.
 std::string within_script(const Json& data) {
   std::string text;
@@ -111,7 +115,29 @@ std::string words_of(const Page& page) {
   return html + "<p>Scripts draw the tables and figures of this page.</p>\n";
 }
 
+std::string words_of(const Json& value) {
+  if (value.is_number_float()) return fmt::format("{:.4g}", value.get<double>());
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::string words;
+  for (const Json& each : value) words += (words.empty() ? "" : ", ") + words_of(each);
+  return words;
+}
+
 }  // namespace
+
+void add_rows(Table& table, const Json& object, const std::vector<std::string>& lead,
+              const std::string& within) {
+  for (const auto& [key, value] : object.items()) {
+    const std::string name = within.empty() ? key : within + " · " + key;
+    if (value.is_object()) {
+      add_rows(table, value, lead, name);
+    } else {
+      table.rows.push_back(lead);
+      table.rows.back().insert(table.rows.back().end(), {name, words_of(value)});
+    }
+  }
+}
 
 std::string html_of(Page page) {
   page.summary = sentence(page.summary);
@@ -124,7 +150,9 @@ std::string html_of(Page page) {
                {"summary", page.summary},
                {"verdicts", json_of(page.verdicts)},
                {"sections", Json::array()}};
-  for (const Section& section : page.sections) data["sections"].push_back(data_of(section));
+  for (const Section& section : page.sections) {
+    if (says_something(section)) data["sections"].push_back(data_of(section));
+  }
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n<title>{}</title></head>\n<body><main>\n"

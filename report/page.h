@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/json_document.h"
 #include "core/verdict.h"
 
 // A report as data. The components of the page (app/web/src/report) draw it.
@@ -24,6 +25,11 @@ struct Table {
   std::set<std::size_t> alarms = {};  ///< rows, from 0, that a verdict is about: drawn in red
   std::vector<double> bars = {};      ///< of each row, before its last cell, 0 to 1; empty: none
 };
+
+/// Adds a row for each value of a JSON object of any shape, those of objects within it too: `lead`, its name
+/// after those that it is within, the value.
+void add_rows(Table& table, const Json& object, const std::vector<std::string>& lead = {},
+              const std::string& within = "");
 
 /// A drawing that is made: report/plot_svg.h.
 using Svg = std::string;
@@ -77,7 +83,7 @@ struct Page {
   std::vector<std::string> meta = {};  ///< lines under it: what was done with what
   std::string summary = {};            ///< one sentence with the numbers that matter most
   std::vector<Verdict> verdicts = {};  ///< what is wrong or weak, the gravest first; empty: all is well
-  std::vector<Section> sections = {};
+  std::vector<Section> sections = {};  ///< those with neither text, rows nor figures are not shown
 };
 
 /// A whole page that needs no other file, for a screen and for paper: the data, and the script that draws it.

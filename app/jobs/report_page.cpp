@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <set>
 #include <utility>
 
@@ -153,24 +152,12 @@ report::Section light_table(const Json& report) {
                           report.value("looked_at", 0))};
 }
 
-// Names and plain values of a JSON object of any shape, as rows.
-void flatten(const Json& value, const std::string& name, report::Table& table) {
-  if (value.is_object()) {
-    for (const auto& [key, inner] : value.items()) {
-      flatten(inner, name.empty() ? key : name + " · " + key, table);
-    }
-    return;
-  }
-  table.rows.push_back({name, value.is_string()         ? value.get<std::string>()
-                              : value.is_number_float() ? fmt::format("{:.4g}", value.get<double>())
-                                                        : value.dump()});
-}
-
 report::Section conditions(const Json& report) {
+  Json said = Json::object();
+  if (report.contains("registration")) said["registration"] = report["registration"];
+  said.update(report.value("conditions", Json::object()));
   report::Table table;
-  for (const char* key : {"registration", "conditions"}) {
-    if (const auto found = report.find(key); found != report.end()) flatten(*found, "", table);
-  }
+  report::add_rows(table, said);
   return {.title = "Conditions", .table = std::move(table), .is_half = true};
 }
 
@@ -198,12 +185,6 @@ report::Section time(const Json& report) {
   return {.title = "Time by phase", .table = std::move(table), .is_half = true};
 }
 
-// Whether there is anything in it.
-bool says_something(const report::Section& section) {
-  return !section.figures.empty() || !section.paragraphs.empty() ||
-         (section.table && !section.table->rows.empty());
-}
-
 }  // namespace
 
 std::string report_page(const Json& report, const std::vector<report::Figure>& pictures) {
@@ -218,7 +199,6 @@ std::string report_page(const Json& report, const std::vector<report::Figure>& p
                    light_table(report),   left_out_section(report, light_noun(report)),
                    gates(report),         time(report),
                    conditions(report)};
-  std::erase_if(page.sections, std::not_fn(says_something));
   return html_of(page);
 }
 

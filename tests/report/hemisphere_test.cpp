@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "report/preview.h"
+
 namespace weft::report {
 namespace {
 

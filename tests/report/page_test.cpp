@@ -6,8 +6,6 @@
 
 #include <limits>
 
-#include "core/json_document.h"
-
 namespace weft::report {
 namespace {
 
@@ -67,6 +65,15 @@ TEST(Page, SaysMostWithoutScripts) {
   for (const char* part : {"<title>Camera of &lt;rig&gt;</title>", "<h1>Camera of &lt;rig&gt;</h1>",
                            "15 boards.", "Weak &amp; cold. Again."})
     EXPECT_THAT(without, HasSubstr(part));
+}
+
+TEST(Table, TakesTheValuesOfAnyJson) {
+  Table table;
+  add_rows(table, Json::parse(R"({"a": {"b": 0.123456, "c": {"d": [1, "x", {"e": true}]}}, "f": 12345})"),
+           {"step"});
+  EXPECT_EQ(table.rows, (std::vector<std::vector<std::string>>{{"step", "a · b", "0.1235"},
+                                                               {"step", "a · c · d", "1, x, {\"e\":true}"},
+                                                               {"step", "f", "12345"}}));
 }
 
 TEST(Figure, IsAMapOfNumbersWithItsScale) {

@@ -121,7 +121,7 @@ TEST(CalibrateResponse, MeasuresASensorFromItsFrames) {
   EXPECT_EQ(hot->planes(41, 50), 0.0F);
   const std::string page = bytes_of(work / "new" / "report" / "response.html");
   EXPECT_THAT(page, HasSubstr("Photon transfer"));
-  EXPECT_THAT(page, HasSubstr("<svg"));
+  EXPECT_THAT(page, HasSubstr("\\u003csvg"));
 }
 
 TEST(CalibrateResponse, KeepsPhotositesThatAreHotOnlyInLongExposures) {

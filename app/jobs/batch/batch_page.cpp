@@ -70,7 +70,7 @@ report::Section done_section(const BatchState& state) {
   return section;
 }
 
-std::optional<report::Section> causes_section(const BatchState& state) {
+report::Section causes_section(const BatchState& state) {
   if (state.summary.causes.empty()) return {};
   report::Section section = {.title = "What is not solved, by cause"};
   section.table = report::Table{.header = {"cause", "kind", "sessions", "one of them"}};
@@ -79,7 +79,7 @@ std::optional<report::Section> causes_section(const BatchState& state) {
   return section;
 }
 
-std::optional<report::Section> warned_section(const BatchState& state) {
+report::Section warned_section(const BatchState& state) {
   if (state.summary.warned.empty()) return {};
   report::Section section = {.title = "Solved, with warnings"};
   section.table = report::Table{.header = {"session", "solved", "expected", "warnings"}};
@@ -147,7 +147,7 @@ report::Section changes_section(const BatchState& state) {
   return section;
 }
 
-std::optional<report::Section> left_out_section(const BatchState& state) {
+report::Section left_out_section(const BatchState& state) {
   if (state.plan.left_out.empty()) return {};
   report::Section section = {.title = "Left out by the plan"};
   section.table = report::Table{.header = {"session", "why", ""}};
@@ -213,13 +213,8 @@ std::vector<Verdict> verdicts_of(const BatchState& state) {
 }
 
 std::vector<report::Section> sections_of(const BatchState& state) {
-  std::vector<report::Section> sections = {done_section(state)};
-  if (auto causes = causes_section(state)) sections.push_back(std::move(*causes));
-  if (auto warned = warned_section(state)) sections.push_back(std::move(*warned));
-  sections.push_back(calibrations_section(state));
-  sections.push_back(changes_section(state));
-  if (auto left = left_out_section(state)) sections.push_back(std::move(*left));
-  return sections;
+  return {done_section(state),         causes_section(state),  warned_section(state),
+          calibrations_section(state), changes_section(state), left_out_section(state)};
 }
 
 std::string batch_page(const BatchState& state, const std::vector<DrawnChange>& drawn) {

@@ -121,17 +121,16 @@ report::Section paper_section(const LightsEvidence& e) {
 
 report::Section error_section(const LightsEvidence& e) {
   const PredictedError& p = *e.predicted;
-  report::Section section = {"Predicted error of normals", {}, {}, {}};
-  section.paragraphs.push_back(
-      fmt::format("What the covariance of the lights makes of a solved normal: at a slope of 20 degrees "
-                  "{:.3f} degrees at the "
-                  "centre of the frame and {:.3f} in its worst corner.",
-                  p.centre_deg, p.corner_deg));
-  section.figures.push_back({"Level cloth, degrees over the frame",
-                             report::FrameMap{p.grid.columns, p.grid.rows, p.level_deg, "deg", 0, {}}});
-  section.figures.push_back({"Slope of 20 degrees, degrees over the frame",
-                             report::FrameMap{p.grid.columns, p.grid.rows, p.slope_deg, "deg", 0, {}}});
-  return section;
+  const auto map_of = [&](const std::vector<double>& error_deg) {
+    return report::FrameMap{p.grid.columns, p.grid.rows, error_deg, "deg", 0};
+  };
+  return {.title = "Predicted error of normals",
+          .paragraphs = {fmt::format(
+              "What the covariance of the lights makes of a solved normal: at a slope of 20 degrees {:.3f} "
+              "degrees at the centre of the frame and {:.3f} in its worst corner.",
+              p.centre_deg, p.corner_deg)},
+          .figures = {{"Level cloth, degrees over the frame", map_of(p.level_deg)},
+                      {"Slope of 20 degrees, degrees over the frame", map_of(p.slope_deg)}}};
 }
 
 // Mean departure of each LED over the frame, in percent.

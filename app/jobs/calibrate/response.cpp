@@ -143,18 +143,17 @@ report::Section transfer_section(const ResponseMeasurement& m) {
     measured.points.push_back({bin.signal_counts, bin.variance_counts2});
     fitted.points.push_back({bin.signal_counts, bin.fitted_counts2});
   }
-  report::Section section = {"Photon transfer"};
-  section.paragraphs = {fmt::format(
-      "Half the variance of the difference of two frames alike, in squares of {} photosites, against their "
-      "mean. Chi-square a degree of freedom: {:.3f}; well above 1 the noise is not that of photons.",
-      calibration::kResponseBlock, m.transfer.chi_square_per_freedom)};
-  section.figures = {
-      {"variance by signal, both linear in light", report::plot_svg({.x_label = "signal, counts",
-                                                                     .y_label = "variance, counts^2",
-                                                                     .series = {measured, fitted},
-                                                                     .log_x = true,
-                                                                     .log_y = true})}};
-  return section;
+  return {.title = "Photon transfer",
+          .paragraphs = {fmt::format("Half the variance of the difference of two frames alike, in squares of "
+                                     "{} photosites, against their mean. Chi-square a degree of freedom: "
+                                     "{:.3f}; well above 1 the noise is not that of photons.",
+                                     calibration::kResponseBlock, m.transfer.chi_square_per_freedom)},
+          .figures = {
+              {"variance by signal, both linear in light", report::plot_svg({.x_label = "signal, counts",
+                                                                             .y_label = "variance, counts^2",
+                                                                             .series = {measured, fitted},
+                                                                             .log_x = true,
+                                                                             .log_y = true})}}};
 }
 
 report::Section linearity_section(const calibration::Superposition& s) {

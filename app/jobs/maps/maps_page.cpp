@@ -47,34 +47,14 @@ report::Table table_of_checks(const Json& checks) {
   return table;
 }
 
-std::string words_of(const Json& value) {
-  if (value.is_number()) return fmt::format("{:.4g}", value.get<double>());
-  if (value.is_string()) return value.get<std::string>();
-  if (!value.is_array()) return value.dump();
-  std::string words;
-  for (const Json& each : value) words += (words.empty() ? "" : ", ") + words_of(each);
-  return words;
-}
-
-// A row for each value of what a step was told or found, of those within others too.
-void add_rows(const std::string& step, const std::string& within, const Json& object, report::Table& table) {
-  for (const auto& [key, value] : object.items()) {
-    if (key == "do" || key == "facts") continue;
-    const std::string name = within.empty() ? key : within + " " + key;
-    if (value.is_object()) {
-      add_rows(step, name, value, table);
-    } else {
-      table.rows.push_back({step, name, words_of(value)});
-    }
-  }
-}
-
 report::Table table_of_steps(const Json& steps) {
   report::Table table = {.header = {"step", "told, and found", ""}};
-  for (const Json& step : steps) {
+  for (Json step : steps) {
     const std::string name = step["do"].get<std::string>();
-    add_rows(name, "", step, table);
-    if (step.contains("facts")) add_rows(name, "", step["facts"], table);
+    const Json facts = step.value("facts", Json::object());
+    for (const char* key : {"do", "facts"}) step.erase(key);
+    report::add_rows(table, step, {name});
+    report::add_rows(table, facts, {name});
   }
   return table;
 }
@@ -120,14 +100,12 @@ Result<void> write_maps_page(const fs::path& folder, const Json& document) {
       .meta = {fmt::format("{} × {} pixels of {:.4g} mm: {:.4g} × {:.4g} mm{}", width, height, mm, width * mm,
                            height * mm, document["is_tile"].get<bool>() ? ", a tile" : "")},
       .verdicts = std::move(*verdicts),
-      .sections = {{.figures = std::move(*pictures)}}};
+      .sections = {{.figures = std::move(*pictures)},
+                   {.title = "Derived maps", .table = table_of(document["maps"])},
+                   {.title = "Checks", .table = table_of_checks(document["checks"])},
+                   {.title = "Finishing", .table = table_of_steps(document["steps"])}}};
   std::ranges::copy(source_lines(document), std::back_inserter(page.meta));
   if (page.verdicts.empty()) page.summary = "Nothing speaks against them.";
-  if (!document["maps"].empty())
-    page.sections.push_back({.title = "Derived maps", .table = table_of(document["maps"])});
-  page.sections.push_back({.title = "Checks", .table = table_of_checks(document["checks"])});
-  if (!document["steps"].empty())
-    page.sections.push_back({.title = "Finishing", .table = table_of_steps(document["steps"])});
   return write_file(folder / "report.html", html_of(page));
 }
 
