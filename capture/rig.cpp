@@ -13,7 +13,7 @@
 #include "core/calibration.h"
 #include "core/fields.h"
 #include "core/toml/field_toml.h"
-#include "core/toml/toml_keys.h"
+#include "core/toml/toml_json.h"
 
 namespace weft::capture {
 namespace {
@@ -205,9 +205,7 @@ void lay_paths(Rig& rig) {
 }  // namespace
 
 Result<Rig> read_rig(const fs::path& file) {
-  const Result<toml::table> table = read_toml(file);
-  if (!table) return table.error();
-  Result<RigFile> said = read_fields<RigFile>(*table, file.string(), kPage);
+  Result<RigFile> said = read_file<RigFile>(file, kPage);
   if (!said) return std::move(said).error();
   Rig rig;
   rig.file = fs::absolute(file).lexically_normal();

@@ -125,7 +125,15 @@ void JsonReader::take_count(const Field& field, std::int64_t& count) {
 
 void JsonReader::choose(const Field& field, Words words, std::size_t /*now*/,
                         const std::function<void(std::size_t)>& choose) {
-  if (is_said(field)) choose(fields_.place_of(field.name, words));
+  if (!is_said(field)) return;
+  if (naming_ != Naming::kOfPeople) return choose(fields_.place_of(field.name, words));
+  const std::string said = fields_.text(field.name);
+  const auto found = std::ranges::find(words, std::string_view(said));
+  if (found == words.end()) {
+    fields_.reject(field.name, rule_of_words({words.begin(), words.end()}, said));
+  } else {
+    choose(static_cast<std::size_t>(found - words.begin()));
+  }
 }
 
 void JsonReader::read_inside(const Json& object, const std::string& name,
@@ -137,7 +145,7 @@ void JsonReader::read_inside(const Json& object, const std::string& name,
 }
 
 void JsonReader::enter(const Field& field, const std::function<void(Fields&)>& inside, bool /*is_default*/) {
-  if (!is_said(field)) return;
+  if (!is_said(field) || !status()) return;
   const bool is_of_people = naming_ == Naming::kOfPeople;
   read_inside(fields_.object(field.name), is_of_people ? fmt::format("[{}]", field.name) : field.name,
               inside);
@@ -146,7 +154,7 @@ void JsonReader::enter(const Field& field, const std::function<void(Fields&)>& i
 void JsonReader::repeat(const Field& field, std::size_t /*count*/,
                         const std::function<void(std::size_t)>& resize,
                         const std::function<void(Fields&, std::size_t)>& inside) {
-  if (!is_said(field)) return;
+  if (!is_said(field) || !status()) return;
   const Json& list = fields_.list(field.name);
   std::string one = field.name;
   if (one.ends_with('s')) one.resize(one.size() - (one.ends_with("ches") ? 2 : 1));

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "capture/camera/camera_profile.h"
 
-#include "core/toml/toml_keys.h"
+#include <array>
+
+#include "core/toml/field_toml.h"
+#include "core/toml/toml_json.h"
 
 namespace weft::capture {
 namespace {
@@ -9,95 +12,70 @@ namespace {
 constexpr const char* kPage = "docs/rig.md";
 constexpr const char* kBuiltIn = "nikon-d5100";
 
-std::string needed(TomlKeys& keys, const char* key) {
-  const std::string text = keys.text_or(key, "");
-  if (text.empty()) keys.reject(key, "it is missing or empty");
-  return text;
+void describe_needed(Fields& fields, const char* name, const char* says, std::string& text) {
+  fields.value({.name = name, .says = says, .need = kMustSay}, text);
+  fields.require(!text.empty(), name, "must not be empty");
 }
 
-Result<void> read_widgets(const toml::table& table, const std::string& where, CameraProfile& profile) {
-  TomlKeys keys(table, where + ": [widgets]", kPage);
-  keys.know({"shutter", "iso", "f_number", "model", "serial", "battery", "clock"});
-  CameraProfile::Widgets& widgets = profile.widgets;
-  widgets.shutter = needed(keys, "shutter");
-  widgets.iso = needed(keys, "iso");
-  widgets.f_number = keys.text_or("f_number", widgets.f_number);
-  widgets.model = keys.text_or("model", widgets.model);
-  widgets.serial = keys.text_or("serial", widgets.serial);
-  widgets.battery = keys.text_or("battery", widgets.battery);
-  widgets.clock = keys.text_or("clock", widgets.clock);
-  return keys.status();
-}
-
-Result<void> read_by_hand(const toml::table& table, const std::string& where, CameraProfile& profile) {
-  TomlKeys keys(table, where + ": [[by_hand]]", kPage);
-  keys.know({"widget", "values", "says", "remedy"});
-  CameraProfile::ByHand by_hand;
-  by_hand.widget = needed(keys, "widget");
-  by_hand.values = keys.texts_or("values", {});
-  if (by_hand.values.empty()) keys.reject("values", "no value is right");
-  by_hand.says = needed(keys, "says");
-  by_hand.remedy = needed(keys, "remedy");
-  profile.by_hand.push_back(std::move(by_hand));
-  return keys.status();
-}
-
-std::vector<CameraProfile::Setting> read_settings(const toml::table& table, const char* name,
-                                                  TomlKeys& keys) {
-  std::vector<CameraProfile::Setting> settings;
-  for (const auto& [widget, value] : table) {
-    if (const auto text = value.value_exact<std::string>()) {
-      settings.emplace_back(widget.str(), *text);
-    } else {
-      keys.reject(std::string(name) + "." + std::string(widget.str()), "it is not a text in quotes");
-    }
+/// A table with a key a widget.
+void describe_settings(Fields& fields, const Field& field, std::vector<CameraProfile::Setting>& settings) {
+  Json table = Json::object();
+  for (const auto& [widget, value] : settings) table[widget] = value;
+  fields.value(field, table);
+  fields.require(table.is_object(), field.name, "must be a table");
+  settings.clear();
+  for (const auto& [widget, value] : table.items()) {
+    fields.require(value.is_string(), (std::string(field.name) + "." + widget).c_str(),
+                   "must be a text in quotes");
+    if (value.is_string()) settings.emplace_back(widget, value.get<std::string>());
   }
-  return settings;
-}
-
-CameraProfile::Trigger read_trigger(TomlKeys& keys) {
-  const std::string name = keys.text_or("trigger", "returns_at_once");
-  if (name == "blocks") return CameraProfile::Trigger::kBlocks;
-  if (name != "returns_at_once") keys.reject("trigger", "it must be \"blocks\" or \"returns_at_once\"");
-  return CameraProfile::Trigger::kReturnsAtOnce;
-}
-
-Result<CameraProfile> read_profile(const toml::table& table, const std::string& where) {
-  CameraProfile profile;
-  TomlKeys keys(table, where, kPage);
-  keys.know({"model", "usb", "ptpip", "trigger", "readout_s", "least_battery", "widgets", "by_hand", "set",
-             "set_where_there"});
-  profile.model = needed(keys, "model");
-  profile.usb_models = keys.texts_or("usb", {});
-  profile.ptpip_model = keys.text_or("ptpip", profile.ptpip_model);
-  profile.trigger = read_trigger(keys);
-  profile.readout_s = keys.number_or("readout_s", profile.readout_s, 0.1, 120);
-  profile.least_battery = keys.number_or("least_battery", profile.least_battery, 0, 1);
-  const Result<void> widgets = read_widgets(keys.table("widgets"), where, profile);
-  if (!widgets) return widgets.error();
-  if (keys.has("by_hand")) {
-    for (const toml::table* each : keys.tables("by_hand")) {
-      if (Result<void> read = read_by_hand(*each, where, profile); !read) return std::move(read).error();
-    }
-  }
-  profile.set = read_settings(keys.table("set"), "set", keys);
-  profile.set_where_there = read_settings(keys.table("set_where_there"), "set_where_there", keys);
-  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
-  return profile;
 }
 
 }  // namespace
 
+void describe(Fields& fields, CameraProfile::Widgets& w) {
+  describe_needed(fields, "shutter", "That takes the exposure", w.shutter);
+  describe_needed(fields, "iso", "That takes the sensitivity", w.iso);
+  fields.value({"f_number", "That takes the aperture; empty: a ring on the lens"}, w.f_number);
+  fields.value({"model", "That says the body's name"}, w.model);
+  fields.value({"serial", "That says the body's number"}, w.serial);
+  fields.value({"battery", "That says the charge; empty: it runs on mains"}, w.battery);
+  fields.value({"clock", "That says the time; empty: no photograph's own time is used"}, w.clock);
+}
+
+void describe(Fields& fields, CameraProfile::ByHand& b) {
+  describe_needed(fields, "widget", "That says how it is set", b.widget);
+  fields.value({.name = "values", .says = "That are right", .need = kMustSay}, b.values);
+  fields.require(!b.values.empty(), "values", "must name one that is right");
+  describe_needed(fields, "says", "What is wrong with others", b.says);
+  describe_needed(fields, "remedy", "What a person does at the body", b.remedy);
+}
+
+void describe(Fields& fields, CameraProfile& p) {
+  describe_needed(fields, "model", "As the camera names itself", p.model);
+  fields.value({"usb", "As libgphoto2 names it on USB"}, p.usb_models);
+  fields.value({"ptpip", "As libgphoto2 names it on a network"}, p.ptpip_model);
+  constexpr std::array<const char*, 2> kTriggers = {"blocks", "returns_at_once"};
+  fields.choice({"trigger", "When libgphoto2's trigger returns"}, p.trigger, kTriggers);
+  fields.value({"readout_s", "Most from the end of an exposure until it has arrived, s", {0.1, 120}},
+               p.readout_s);
+  fields.value({"least_battery", "Share below which no scan begins", {0, 1}}, p.least_battery);
+  fields.object({.name = "widgets", .says = "Names of libgphoto2's widgets", .need = kMustSay}, p.widgets);
+  fields.list({"by_hand", "What only a person can set at the body"}, p.by_hand);
+  describe_settings(fields, {"set", "Widgets with the values that each must take"}, p.set);
+  describe_settings(fields, {"set_where_there", "Likewise, for bodies that have them"}, p.set_where_there);
+}
+
 Result<CameraProfile> read_camera_profile(const std::string& name_or_file) {
-  if (name_or_file == kBuiltIn) return read_profile(toml::parse(nikon_d5100_toml()), kBuiltIn);
+  if (name_or_file == kBuiltIn) {
+    return read_fields<CameraProfile>(toml::parse(nikon_d5100_toml()), kBuiltIn, kPage);
+  }
   if (!name_or_file.ends_with(".toml")) {
     return Error{ErrorKind::kUsage, "there is no camera profile of this name", name_or_file,
                  std::string("built in is ") + kBuiltIn,
                  "name that one, or a file that ends in .toml (docs/rig.md shows one)"};
   }
-  const Result<toml::table> table = read_toml(name_or_file);
-  if (!table) return table.error();
-  return read_profile(*table, name_or_file);
+  return read_file<CameraProfile>(name_or_file, kPage);
 }
 
 }  // namespace weft::capture

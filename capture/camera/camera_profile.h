@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/fields.h"
 #include "core/result.h"
 
 namespace weft::capture {
@@ -43,6 +44,10 @@ struct CameraProfile {
   std::vector<Setting> set;                             ///< each must be there and take the value
   std::vector<Setting> set_where_there;                 ///< bodies without this widget are fine as well
 };
+
+void describe(Fields& fields, CameraProfile::Widgets& widgets);
+void describe(Fields& fields, CameraProfile::ByHand& by_hand);
+void describe(Fields& fields, CameraProfile& profile);
 
 /// The profile of this name that is built in ("nikon-d5100"), or the one of a TOML file (a name that ends in
 /// ".toml"). Errors: kUsage (no such name), kNoInput, kBadData with the key.

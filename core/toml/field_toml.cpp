@@ -15,9 +15,9 @@
 namespace weft {
 namespace {
 
-/// A key that no field has, and where it stands.
+/// A key that no field has, where it stands, and what is said of it.
 struct UnknownKey {
-  std::string where, key, nearest;
+  std::string where, key, why;
 };
 
 std::optional<UnknownKey> unknown_key(const Json& object, const Json& schema, const std::string& where) {
@@ -26,7 +26,7 @@ std::optional<UnknownKey> unknown_key(const Json& object, const Json& schema, co
     if (!properties.contains(key)) {
       std::vector<std::string> known;
       for (const auto& [name, property] : properties.items()) known.push_back(name);
-      return UnknownKey{where, key, nearest_word(known, key)};
+      return UnknownKey{where, key, no_such_key(known, key)};
     }
     const bool is_list = value.is_array();
     const Json inside = is_list ? properties[key].value("items", Json::object()) : properties[key];
@@ -76,16 +76,23 @@ void append(std::string& text, const Json& object) {
 
 }  // namespace
 
+Error unusable_description(std::string where, const std::string& page, std::string why) {
+  return {ErrorKind::kBadData, "the description cannot be used", std::move(where), std::move(why),
+          fmt::format("see {} for the keys of this file", page)};
+}
+
+std::string no_such_key(const std::vector<std::string>& known, std::string_view key) {
+  return "there is no such key; the nearest is " + nearest_word(known, key);
+}
+
 Result<void> read_table(const toml::table& table, const std::string& where, const std::string& page,
                         const Json& schema, const std::function<void(Fields&)>& walk) {
   const auto unusable = [&](std::string place, std::string why) {
-    return Error{ErrorKind::kBadData, "the description cannot be used", std::move(place), std::move(why),
-                 fmt::format("see {} for the keys of this file", page)};
+    return unusable_description(std::move(place), page, std::move(why));
   };
   const Json document = with_whole_numbers(json_of(table));
   if (const auto unknown = unknown_key(document, schema, where)) {
-    return unusable(fmt::format("{}: {}", unknown->where, unknown->key),
-                    fmt::format("there is no such key; the nearest is {}", unknown->nearest));
+    return unusable(fmt::format("{}: {}", unknown->where, unknown->key), unknown->why);
   }
   JsonReader reader(document, where, Naming::kOfPeople);
   walk(reader);

@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <functional>
 #include <set>
-#include <span>
 #include <utility>
 
 #include "core/text.h"
-#include "core/toml/toml_keys.h"
+#include "core/toml/field_toml.h"
+#include "core/toml/toml_json.h"
 #include "exchange/document.h"
 
 namespace weft::exchange {
@@ -21,47 +20,10 @@ constexpr const char* kPage = "docs/exports.md";
 constexpr const char* kSchema = "weft.preset/1";
 constexpr std::size_t kMostFiles = 64;
 
-// Reads the tables of one preset; the first thing that is wrong is remembered, with its file and key.
-class PresetReader {
- public:
-  PresetReader(const toml::table& table, std::string where) : table_(&table), where_(std::move(where)) {}
-
-  Result<Preset> read();
-
- private:
-  std::size_t word(TomlKeys& keys, const char* key, const std::string& value,
-                   std::span<const char* const> words);
-  Stored stored(TomlKeys& keys);
-  void channels(TomlKeys& keys, PresetFile& file);
-  void name(TomlKeys& keys, const std::string& pattern, const std::vector<std::string>& endings);
-  PresetFile file(TomlKeys& keys);
-  PresetDocument document(TomlKeys& keys);
-  void several(const char* key, const std::function<void(TomlKeys&)>& read_one);
-  void keep(const TomlKeys& keys) {
-    if (Result<void> status = keys.status(); !status && !error_) error_ = status.error();
-  }
-
-  const toml::table* table_;
-  std::string where_;
-  Preset preset_;
-  std::set<std::string> names_;
-  std::optional<Error> error_;
-};
-
 std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
-}
-
-std::size_t PresetReader::word(TomlKeys& keys, const char* key, const std::string& value,
-                               std::span<const char* const> words) {
-  const auto found = std::ranges::find(words, value, [](const char* each) { return std::string(each); });
-  if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
-  const auto far = [&](const char* each) { return edit_distance(value, each); };
-  keys.reject(key, fmt::format("\"{}\" is none of {}; the nearest is {}", value, fmt::join(words, ", "),
-                               *std::ranges::min_element(words, {}, far)));
-  return 0;
 }
 
 const std::vector<std::string>& endings_of(Encoding encoding) {
@@ -83,31 +45,24 @@ std::vector<int> bits_of(Encoding encoding) {
   }
 }
 
-Stored PresetReader::stored(TomlKeys& keys) {
-  Stored stored;
-  stored.encoding =
-      static_cast<Encoding>(word(keys, "encoding", keys.text_or("encoding", "png"), kEncodingNames));
-  const std::vector<int> bits = bits_of(stored.encoding);
-  stored.bits = keys.integer_or("bits", bits.front(), 8, 32);
-  if (std::ranges::find(bits, stored.bits) == bits.end())
-    keys.reject("bits", fmt::format("{} holds {} bits", name_of(stored.encoding), fmt::join(bits, " or ")));
-  stored.color =
-      static_cast<ColorSpace>(word(keys, "color", keys.text_or("color", "data"), kColorSpaceNames));
-  stored.is_prman = keys.flag_or("prman", false);
-  if (stored.is_prman && stored.encoding != Encoding::kTx) keys.reject("prman", "only a tx has it");
-  const std::string blocks = keys.text_or("blocks", "");
-  if ((stored.encoding == Encoding::kDds) != !blocks.empty()) {
-    keys.reject("blocks",
-                blocks.empty() ? "a dds has blocks: bc1, bc3, bc4, bc5 or bc7" : "only a dds has blocks");
-  } else if (!blocks.empty()) {
-    if (const std::optional<BlockFormat> format = block_format_named(blocks)) {
-      stored.blocks = *format;
-    } else {
-      keys.reject("blocks", fmt::format("\"{}\" is none of bc1, bc3, bc4, bc5, bc7", blocks));
-    }
-  }
-  return stored;
-}
+/// A [[file]], with what depends on other keys as it is said.
+struct WrittenFile {
+  PresetFile file;
+  std::optional<int> bits;
+  std::optional<std::string> blocks, normal;
+};
+
+/// A [[document]].
+struct WrittenDocument {
+  PresetDocument document;
+};
+
+struct WrittenPreset {
+  Preset preset;
+  std::string schema;
+  std::vector<WrittenFile> files;
+  std::vector<WrittenDocument> documents;
+};
 
 // How many channels a file of this kind may have.
 std::vector<std::size_t> counts_of(const Stored& stored) {
@@ -127,107 +82,157 @@ std::vector<std::size_t> counts_of(const Stored& stored) {
   return {3, 4};
 }
 
-void PresetReader::channels(TomlKeys& keys, PresetFile& file) {
-  file.channels = keys.texts_or("channels", {});
+void describe_name(Fields& fields, std::string& name, const std::vector<std::string>& endings) {
+  fields.value({.name = "name", .says = "Pattern with {name}: \"{name}_diff.png\"", .need = kMustSay}, name);
+  const auto ends = [&](const std::string& ending) { return name.ends_with(ending); };
+  fields.require(std::ranges::any_of(endings, ends), "name",
+                 fmt::format("\"{}\" does not end in {}", name, fmt::join(endings, " or ")));
+  const std::string example = named(name, "cloth");
+  fields.require(example.find_first_of("{}") == std::string::npos, "name",
+                 fmt::format("\"{}\" has braces other than those of {{name}}", name));
+  const Result<void> portable = check_portable_path(example);
+  fields.require(static_cast<bool>(portable), "name",
+                 fmt::format("\"{}\": {}", name, portable ? "" : portable.error().why));
+}
+
+void describe_stored(Fields& fields, WrittenFile& w) {
+  Stored& stored = w.file.stored;
+  fields.choice({"encoding", "Of the file"}, stored.encoding, kEncodingNames);
+  const std::vector<int> bits = bits_of(stored.encoding);
+  fields.value({"bits", "A channel; default the fewest that the encoding has", {8, 32}}, w.bits);
+  stored.bits = w.bits.value_or(bits.front());
+  fields.require(
+      std::ranges::find(bits, stored.bits) != bits.end(), "bits",
+      fmt::format("cannot be: {} holds {} bits", name_of(stored.encoding), fmt::join(bits, " or ")));
+  fields.choice({"color", "Transfer function of colour channels"}, stored.color, kColorSpaceNames);
+  fields.value({"prman", "A tx has the metadata that RenderMan looks for"}, stored.is_prman);
+  fields.require(!stored.is_prman || stored.encoding == Encoding::kTx, "prman",
+                 "cannot be: only a tx has it");
+  Field blocks = {"blocks", "Of a dds"};
+  for (const BlockFormat format : kBlockFormats) blocks.words.emplace_back(name_of(format));
+  fields.value(blocks, w.blocks);
+  const bool is_dds = stored.encoding == Encoding::kDds;
+  fields.require(is_dds || !w.blocks, "blocks", "cannot be: only a dds has blocks");
+  fields.require(!is_dds || w.blocks, "blocks",
+                 fmt::format("is missing: a dds has blocks: {}", fmt::join(blocks.words, ", ")));
+  stored.blocks = block_format_named(w.blocks.value_or("")).value_or(stored.blocks);
+}
+
+void describe_channels(Fields& fields, PresetFile& file) {
+  fields.value({.name = "channels", .says = "Of the catalogue, one to four", .need = kMustSay},
+               file.channels);
   const std::vector<std::size_t> counts = counts_of(file.stored);
-  if (std::ranges::find(counts, file.channels.size()) == counts.end()) {
-    keys.reject("channels", fmt::format("{} are named where {} holds {}", file.channels.size(),
-                                        words_of(file.stored), fmt::join(counts, " or ")));
-  }
-  bool has_y = false;
+  fields.require(std::ranges::find(counts, file.channels.size()) != counts.end(), "channels",
+                 fmt::format("cannot be: {} are named where {} holds {}", file.channels.size(),
+                             words_of(file.stored), fmt::join(counts, " or ")));
   for (const std::string& each : file.channels) {
-    if (channel_named(each) == nullptr) {
-      keys.reject("channels",
-                  fmt::format("there is no channel {}; the nearest is {}", each, nearest_channel(each)));
-    }
-    has_y = has_y || each == "normal.y" || each == "detail.normal.y";
-  }
-  const std::string otherwise = preset_.normal == "both" ? "" : preset_.normal;
-  const std::string direction = keys.text_or("normal", otherwise);
-  if (!has_y && !keys.has("normal")) return;
-  if (direction.empty()) {
-    keys.reject("normal", "the preset has normals in both directions, and this file does not say which");
-    return;
-  }
-  file.direction = static_cast<NormalDirection>(word(keys, "normal", direction, kNormalDirectionNames));
-}
-
-void PresetReader::name(TomlKeys& keys, const std::string& pattern, const std::vector<std::string>& endings) {
-  const auto ends = [&](const std::string& ending) { return pattern.ends_with(ending); };
-  if (std::ranges::none_of(endings, ends)) {
-    keys.reject("name", fmt::format("\"{}\" does not end in {}", pattern, fmt::join(endings, " or ")));
-    return;
-  }
-  const std::string example = named(pattern, "cloth");
-  if (example.find_first_of("{}") != std::string::npos) {
-    keys.reject("name", fmt::format("\"{}\" has braces other than those of {{name}}", pattern));
-  } else if (const Result<void> portable = check_portable_path(example); !portable) {
-    keys.reject("name", fmt::format("\"{}\": {}", pattern, portable.error().why));
-  } else if (!names_.insert(lower(example)).second || lower(example) == "export.json") {
-    keys.reject("name", fmt::format("\"{}\" stands twice, as many disks do not tell case", pattern));
+    if (channel_named(each) != nullptr) continue;
+    fields.require(
+        false, "channels",
+        fmt::format("cannot be: there is no channel {}; the nearest is {}", each, nearest_channel(each)));
   }
 }
 
-PresetFile PresetReader::file(TomlKeys& keys) {
-  keys.know({"name", "channels", "encoding", "bits", "blocks", "color", "normal", "prman", "optional"});
-  PresetFile file;
-  file.stored = stored(keys);
-  file.name = keys.text_or("name", "");
-  name(keys, file.name, endings_of(file.stored.encoding));
-  channels(keys, file);
-  file.is_optional = keys.flag_or("optional", false);
-  return file;
+void describe(Fields& fields, WrittenFile& w) {
+  describe_stored(fields, w);
+  describe_name(fields, w.file.name, endings_of(w.file.stored.encoding));
+  describe_channels(fields, w.file);
+  fields.value({.name = "normal",
+                .says = "Which way y goes; default that of the preset",
+                .words = {kNormalDirectionNames.begin(), kNormalDirectionNames.end()}},
+               w.normal);
+  fields.value({"optional", "Left out where the cloth has no map for it"}, w.file.is_optional);
 }
 
-PresetDocument PresetReader::document(TomlKeys& keys) {
-  keys.know({"name", "kind", "optional"});
-  PresetDocument document;
-  document.kind = static_cast<DocumentKind>(word(keys, "kind", keys.text_or("kind", ""), kDocumentKindNames));
-  document.name = keys.text_or("name", "");
+void describe(Fields& fields, WrittenDocument& w) {
+  PresetDocument& document = w.document;
+  fields.choice({.name = "kind", .says = "Of the document", .need = kMustSay}, document.kind,
+                kDocumentKindNames);
   const bool is_json = document.kind == DocumentKind::kLayers;
   const std::string ending = is_json ? "json" : kDocumentKindNames[static_cast<std::size_t>(document.kind)];
-  name(keys, document.name, {"." + ending});
-  document.is_optional = keys.flag_or("optional", false);
-  if (preset_.roughness != RoughnessConvention::kRoot && !is_json)
-    keys.reject("kind", "documents hold the root of alpha: the preset's roughness must be \"root\"");
-  return document;
+  describe_name(fields, document.name, {"." + ending});
+  fields.value({"optional", "Left out where the cloth lacks what the kind asks for"}, document.is_optional);
 }
 
-void PresetReader::several(const char* key, const std::function<void(TomlKeys&)>& read_one) {
-  TomlKeys all(*table_, where_, kPage);
-  if (!all.has(key)) return;
-  const std::vector<const toml::table*> tables = all.tables(key);
-  if (tables.size() > kMostFiles) all.reject(key, fmt::format("there are over {}", kMostFiles));
-  keep(all);
-  for (std::size_t i = 0; i < tables.size(); ++i) {
-    TomlKeys keys(*tables[i], fmt::format("{}: {} {}", where_, key, i + 1), kPage);
-    read_one(keys);
-    keep(keys);
+void describe(Fields& fields, WrittenPreset& w) {
+  Preset& preset = w.preset;
+  fields.value({.name = "schema", .says = kSchema, .need = kMustSay, .words = {kSchema}}, w.schema);
+  fields.value({.name = "name", .says = "Letters, digits, \".\", \"_\" and \"-\"", .need = kMustSay},
+               preset.name);
+  const bool is_plain =
+      !preset.name.empty() && plain_name(preset.name) == preset.name && check_portable_path(preset.name);
+  fields.require(is_plain, "name", "must have letters, digits, \".\", \"_\" and \"-\" alone");
+  fields.value({"says", "For people, a sentence without a full stop"}, preset.says);
+  fields.value(
+      {.name = "normal", .says = "Which way y goes in its normals", .words = {"opengl", "directx", "both"}},
+      preset.normal);
+  fields.choice({"roughness", "What its roughness is"}, preset.roughness, kRoughnessConventionNames);
+  fields.value(
+      {"most_px", "Of the longer side; larger maps are averaged down to it; 0: as they are", {0, 1 << 20}},
+      preset.most_px);
+  fields.list({.name = "file", .says = "Each texture", .need = kMustSay}, w.files);
+  fields.list({"document", "Each document of the textures"}, w.documents);
+  fields.require(!w.files.empty(), "file", "must stand at least once, as [[file]]");
+  fields.require(std::max(w.files.size(), w.documents.size()) <= kMostFiles, "file",
+                 fmt::format("cannot be: there are over {}", kMostFiles));
+}
+
+// What no table tells by itself: a name that stands twice, and which way normals go.
+class PresetParts {
+ public:
+  PresetParts(WrittenPreset written, std::string where)
+      : written_(std::move(written)), where_(std::move(where)) {}
+
+  Result<Preset> joined() {
+    Preset& preset = written_.preset;
+    for (std::size_t i = 0; i < written_.files.size(); ++i) {
+      if (Result<void> ok = add(written_.files[i], fmt::format("file {}", i + 1)); !ok)
+        return std::move(ok).error();
+    }
+    for (std::size_t i = 0; i < written_.documents.size(); ++i) {
+      const PresetDocument& document = written_.documents[i].document;
+      const std::string place = fmt::format("document {}", i + 1);
+      if (Result<void> ok = add_name(document.name, place); !ok) return std::move(ok).error();
+      if (preset.roughness != RoughnessConvention::kRoot && document.kind != DocumentKind::kLayers) {
+        return unfit(place + ": kind",
+                     "documents hold the root of alpha: the preset's roughness must be \"root\"");
+      }
+      preset.documents.push_back(document);
+    }
+    return std::move(preset);
   }
-}
 
-Result<Preset> PresetReader::read() {
-  TomlKeys keys(*table_, where_, kPage);
-  keys.know({"schema", "name", "says", "normal", "roughness", "most_px", "file", "document"});
-  const std::string schema = keys.text_or("schema", "");
-  if (schema != kSchema) keys.reject("schema", fmt::format("\"{}\" is not {}", schema, kSchema));
-  preset_.name = keys.text_or("name", "");
-  if (preset_.name.empty() || plain_name(preset_.name) != preset_.name || !check_portable_path(preset_.name))
-    keys.reject("name", "a preset's name has letters, digits, \".\", \"_\" and \"-\" alone");
-  preset_.says = keys.text_or("says", "");
-  constexpr std::array<const char*, 3> kNormals = {"opengl", "directx", "both"};
-  preset_.normal = kNormals[word(keys, "normal", keys.text_or("normal", "opengl"), kNormals)];
-  preset_.roughness = static_cast<RoughnessConvention>(
-      word(keys, "roughness", keys.text_or("roughness", "root"), kRoughnessConventionNames));
-  preset_.most_px = keys.integer_or("most_px", 0, 0, 1 << 20);
-  keep(keys);
-  several("file", [&](TomlKeys& each) { preset_.files.push_back(file(each)); });
-  several("document", [&](TomlKeys& each) { preset_.documents.push_back(document(each)); });
-  if (preset_.files.empty()) keys.reject("file", "there is no [[file]]");
-  keep(keys);
-  if (error_) return *error_;
-  return std::move(preset_);
-}
+ private:
+  Error unfit(const std::string& place, std::string why) const {
+    return unusable_description(fmt::format("{}: {}", where_, place), kPage, std::move(why));
+  }
+
+  Result<void> add_name(const std::string& pattern, const std::string& place) {
+    const std::string example = lower(named(pattern, "cloth"));
+    if (names_.insert(example).second && example != "export.json") return {};
+    return unfit(place + ": name",
+                 fmt::format("\"{}\" stands twice, as many disks do not tell case", pattern));
+  }
+
+  Result<void> add(const WrittenFile& written, const std::string& place) {
+    PresetFile file = written.file;
+    if (Result<void> ok = add_name(file.name, place); !ok) return ok;
+    const auto is_y = [](const std::string& each) { return each == "normal.y" || each == "detail.normal.y"; };
+    const std::string direction = written.normal.value_or(written_.preset.normal);
+    const bool has_direction = written.normal || std::ranges::any_of(file.channels, is_y);
+    if (has_direction && direction == "both") {
+      return unfit(place + ": normal",
+                   "the preset has normals in both directions, and this file does not say which");
+    }
+    if (has_direction && direction == "directx") file.direction = NormalDirection::kDirectX;
+    written_.preset.files.push_back(std::move(file));
+    return {};
+  }
+
+  WrittenPreset written_;
+  std::string where_;
+  std::set<std::string> names_;
+};
 
 }  // namespace
 
@@ -256,7 +261,9 @@ bool Preset::keeps_no_files() const {
 Result<Preset> preset_from_toml(std::string_view text, const std::string& where) {
   const Result<toml::table> table = parse_toml(text, where);
   if (!table) return table.error();
-  return PresetReader(*table, where).read();
+  Result<WrittenPreset> written = read_fields<WrittenPreset>(*table, where, kPage);
+  if (!written) return std::move(written).error();
+  return PresetParts(std::move(*written), where).joined();
 }
 
 std::string named(const std::string& pattern, const std::string& name) {

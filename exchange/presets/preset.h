@@ -59,8 +59,8 @@ struct PresetDocument {
 
 struct Preset {
   std::string name;
-  std::string says;    ///< for people, a sentence without a full stop
-  std::string normal;  ///< "opengl", "directx" or "both"
+  std::string says;               ///< for people, a sentence without a full stop
+  std::string normal = "opengl";  ///< or "directx" or "both"
   RoughnessConvention roughness = RoughnessConvention::kRoot;
   int most_px = 0;  ///< of the longer side; larger maps are averaged down to it. 0: as they are
   std::vector<PresetFile> files;

@@ -170,7 +170,7 @@ TEST(Layers, ForbidEveryStepUpwardsOrSideways) {
        std::vector<Case>{{"core/image.cpp", "core/image_io/image_io.h"},
                          {"core/image.cpp", "solver/solve.h"},
                          {"core/image_io/exr.cpp", "capture/raw/decode.h"},
-                         {"core/image.cpp", "core/toml/toml_keys.h"},
+                         {"core/image.cpp", "core/toml/toml_json.h"},
                          {"capture/scan.cpp", "calibration/lights.h"},
                          {"capture/scan.cpp", "firmware/board/main.h"},
                          {"calibration/lights.cpp", "capture/raw/decode.h"},

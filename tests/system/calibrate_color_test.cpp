@@ -203,9 +203,9 @@ TEST(CalibrateColor, RefusesWhatIsNoChartAndNoPicture) {
   for (std::size_t i = 0; i < 8; i += 2) options.corners_px[i] = options.corners_px[i] / 4 + 150;
   EXPECT_THAT(refusal(work, options), HasSubstr("not the chart"));
   ASSERT_TRUE(write_file(work / "color" / "chart.toml", "srgb = [[1, 2, 3]]\n"));
-  EXPECT_THAT(refusal(work, options_of(work)), HasSubstr("not 24 lists"));
+  EXPECT_THAT(refusal(work, options_of(work)), HasSubstr("must be 24 lists"));
   ASSERT_TRUE(write_file(work / "color" / "chart.toml", "edition = \"1976\"\n"));
-  EXPECT_THAT(refusal(work, options_of(work)), HasSubstr("no edition"));
+  EXPECT_THAT(refusal(work, options_of(work)), HasSubstr("must be one of 2014, before 2014"));
   fs::remove(work / "color" / "chart.toml");
   test::put_bytes(work / "color" / "b.dng", "II*");
   EXPECT_THAT(refusal(work, options_of(work)), HasSubstr("b.dng"));

@@ -382,6 +382,12 @@ TEST_F(CalibrationCheck, PatchesAreMeasuredByTheLightThatIsKnown) {
       {.session = root_ / "cloth.weft", .patches = root_ / "wrong.toml", .output = root_ / "never"}, {});
   ASSERT_FALSE(wrong);
   EXPECT_THAT(wrong.error().message(), HasSubstr("patch 1"));
+  ASSERT_TRUE(write_file(root_ / "wrong.toml", "[[patch]]\npolygon = [[1, 1], [70, 1], [1, 30]]\n"));
+  const auto misspelt = calibrate_patches(
+      {.session = root_ / "cloth.weft", .patches = root_ / "wrong.toml", .output = root_ / "never"}, {});
+  ASSERT_FALSE(misspelt);
+  EXPECT_THAT(misspelt.error().message(),
+              HasSubstr("patch 1: polygon: there is no such key; the nearest is polygon_px"));
   EXPECT_FALSE(is_there(root_ / "never"));
 }
 

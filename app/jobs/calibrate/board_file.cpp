@@ -8,7 +8,7 @@
 #include "app/jobs/calibrate/sheet_files.h"
 #include "core/files.h"
 #include "core/toml/field_toml.h"
-#include "core/toml/toml_keys.h"
+#include "core/toml/toml_json.h"
 
 namespace weft::app {
 namespace {
@@ -46,9 +46,7 @@ void describe_board(Fields& fields, BoardSettings& b, const char* kind) {
 /// What the file says, where the options say nothing.
 Result<BoardSettings> settings_of(const fs::path& file, const BoardSettings& options) {
   if (!is_there(file)) return options;
-  const Result<toml::table> table = read_toml(file);
-  if (!table) return table.error();
-  Result<BoardDescription> said = read_fields<BoardDescription>(*table, file.string(), kCalibrationPage);
+  Result<BoardDescription> said = read_file<BoardDescription>(file, kCalibrationPage);
   if (!said) return std::move(said).error();
   const auto over = [](const auto& by_option, auto& in_file) {
     if (by_option) in_file = by_option;

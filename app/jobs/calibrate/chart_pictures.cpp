@@ -3,15 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <utility>
 
 #include "app/jobs/linear_image.h"
 #include "app/jobs/raw_picture.h"
 #include "app/jobs/session_input.h"
 #include "capture/raw/decode.h"
 #include "core/files.h"
+#include "core/toml/field_toml.h"
+#include "core/toml/toml_json.h"
 #include "pipeline/bands.h"
 #include "solver/method.h"
 
@@ -67,20 +69,39 @@ Error bad_chart_file(const fs::path& file, std::string why) {
           "give edition = \"2014\" or \"before 2014\", or 24 colours as lab_d50, rec709 or srgb"};
 }
 
-// 24 triples.
-std::optional<std::array<std::array<double, 3>, 24>> triples_of(const toml::array* list) {
-  if (list == nullptr || list->size() != 24) return {};
-  std::array<std::array<double, 3>, 24> triples = {};
-  for (std::size_t i = 0; i < 24; ++i) {
-    const toml::array* triple = list->get_as<toml::array>(i);
-    if (triple == nullptr || triple->size() != 3) return {};
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::optional<double> value = triple->get(c)->value<double>();
-      if (!value || !std::isfinite(*value)) return {};
-      triples[i][c] = *value;
+/// What chart.toml says: one of these.
+struct ChartFile {
+  ChartEdition chart;
+  Json lab_d50, rec709, srgb;
+};
+
+void describe(Fields& fields, ChartFile& file) {
+  describe(fields, file.chart);
+  for (const auto& [name, colors] : {std::pair("lab_d50", &file.lab_d50), std::pair("rec709", &file.rec709),
+                                     std::pair("srgb", &file.srgb)}) {
+    fields.value({name, "Colours of its 24 patches, three numbers each"}, *colors);
+    const auto rows = rows_of(*colors, 3);
+    fields.require(colors->is_null() || (rows && rows->size() == 24), name,
+                   "must be 24 lists of three numbers");
+  }
+}
+
+// Of the 24 triples of one key.
+Result<ChartColors> written_colors(const fs::path& file, const std::string& key, const Json& list) {
+  ChartColors colors;
+  colors.name = "by chart.toml";
+  const std::vector<std::vector<double>> rows = *rows_of(list, 3);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::array<double, 3> t = {rows[i][0], rows[i][1], rows[i][2]};
+    colors.reference[i] = key == "lab_d50" ? rec709_of_lab_d50({t[0], t[1], t[2]})
+                          : key == "srgb"  ? rec709_of_srgb({t[0] / 255, t[1] / 255, t[2] / 255})
+                                           : t;
+    const double luminance = xyz_of_rec709(colors.reference[i])[1];
+    if (!(luminance > 0 && luminance < 1.2)) {
+      return bad_chart_file(file, fmt::format("patch {} has a luminance of {:.3g}", i + 1, luminance));
     }
   }
-  return triples;
+  return colors;
 }
 
 }  // namespace
@@ -134,43 +155,17 @@ Result<ChartColors> read_chart_colors(const fs::path& input) {
   const ChartColors published = {calibration::published_chart(),
                                  "as published for charts from November 2014"};
   if (!is_there(file)) return published;
-  const Result<std::string> text = read_text(file);
-  if (!text) return text.error();
-  toml::table table;
-  try {
-    table = toml::parse(*text);
-  } catch (const toml::parse_error& e) {
-    return bad_chart_file(file, fmt::format("line {}: {}", e.source().begin.line, e.description()));
-  }
-  if (table.size() != 1) return bad_chart_file(file, fmt::format("it has {} keys", table.size()));
-  const std::string key(table.begin()->first.str());
-  if (key == "edition") {
-    const std::string edition = table[key].value_or(std::string());
-    if (edition == "2014") return published;
-    if (edition == "before 2014") {
-      return ChartColors{calibration::published_chart_before_2014(),
-                         "as published for charts before November 2014"};
-    }
-    return bad_chart_file(file, fmt::format("there is no edition \"{}\"", edition));
-  }
-  if (key != "lab_d50" && key != "rec709" && key != "srgb") {
-    return bad_chart_file(file, fmt::format("{} means nothing", key));
-  }
-  const auto triples = triples_of(table[key].as_array());
-  if (!triples) return bad_chart_file(file, fmt::format("{} is not 24 lists of three numbers", key));
-  ChartColors colors;
-  colors.name = "by chart.toml";
-  for (std::size_t i = 0; i < 24; ++i) {
-    const auto& t = (*triples)[i];
-    colors.reference[i] = key == "lab_d50" ? rec709_of_lab_d50({t[0], t[1], t[2]})
-                          : key == "srgb"  ? rec709_of_srgb({t[0] / 255, t[1] / 255, t[2] / 255})
-                                           : t;
-    const double luminance = xyz_of_rec709(colors.reference[i])[1];
-    if (!(luminance > 0 && luminance < 1.2)) {
-      return bad_chart_file(file, fmt::format("patch {} has a luminance of {:.3g}", i + 1, luminance));
-    }
-  }
-  return colors;
+  const Result<toml::table> table = read_toml(file);
+  if (!table) return table.error();
+  const Result<ChartFile> said = read_fields<ChartFile>(*table, file.string(), kCalibrationPage);
+  if (!said) return said.error();
+  if (table->size() != 1) return bad_chart_file(file, fmt::format("it has {} keys", table->size()));
+  if (!said->lab_d50.is_null()) return written_colors(file, "lab_d50", said->lab_d50);
+  if (!said->rec709.is_null()) return written_colors(file, "rec709", said->rec709);
+  if (!said->srgb.is_null()) return written_colors(file, "srgb", said->srgb);
+  if (said->chart.edition == "2014") return published;
+  return ChartColors{calibration::published_chart_before_2014(),
+                     "as published for charts before November 2014"};
 }
 
 void describe(Fields& fields, ChartEdition& chart) {

@@ -22,7 +22,8 @@
 #include "core/field_check.h"
 #include "core/files.h"
 #include "core/iso_time.h"
-#include "core/toml/toml_keys.h"
+#include "core/toml/field_toml.h"
+#include "core/toml/toml_json.h"
 
 namespace weft::app {
 namespace {
@@ -55,27 +56,41 @@ Result<std::vector<fs::path>> sessions_in(const fs::path& input) {
   return sessions;
 }
 
-/// Normals of sheets on wedges, by session, of check.toml.
+/// A [[plane]] of check.toml: a sheet on a wedge.
+struct KnownPlane {
+  std::string session;
+  double tilt_deg = 0, azimuth_deg = 0;
+};
+
+void describe(Fields& fields, KnownPlane& plane) {
+  fields.value({.name = "session", .says = "Folder beside this file", .need = kMustSay}, plane.session);
+  fields.value({"tilt_deg", "Of the sheet, degrees", {0, 60}, kMustSay}, plane.tilt_deg);
+  fields.value({"azimuth_deg", "Towards which its normal leans, degrees", {-360, 360}, kMustSay},
+               plane.azimuth_deg);
+}
+
+struct CheckFile {
+  std::vector<KnownPlane> planes;
+};
+
+void describe(Fields& fields, CheckFile& file) {
+  fields.list({.name = "plane", .says = "Sheets on wedges", .need = kMustSay}, file.planes);
+}
+
+/// Normals of sheets on wedges, by session.
 Result<std::map<std::string, Vec3>> known_planes(const fs::path& input) {
   std::map<std::string, Vec3> planes;
   const fs::path file = in_or_beside(input, "check.toml");
   if (!is_there(file)) return planes;
-  const Result<toml::table> table = read_toml(file);
-  if (!table) return table.error();
-  TomlKeys keys(*table, file.string(), kCalibrationPage);
-  keys.know({"plane"});
-  const std::vector<const toml::table*> list = keys.tables("plane");
-  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    TomlKeys plane(*list[i], fmt::format("{}: plane {}", file.string(), i + 1), kCalibrationPage);
-    plane.know({"session", "tilt_deg", "azimuth_deg"});
-    const std::string session = plane.text_or("session", "");
-    const double t = radians(plane.number("tilt_deg", 0, 60)),
-                 a = radians(plane.number("azimuth_deg", -360, 360));
-    if (session.empty() || !is_there(file.parent_path() / session))
-      plane.reject("session", "it must name a session beside this file");
-    if (Result<void> ok = plane.status(); !ok) return std::move(ok).error();
-    planes[session] = {std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)};
+  const Result<CheckFile> said = read_file<CheckFile>(file, kCalibrationPage);
+  if (!said) return said.error();
+  for (const KnownPlane& plane : said->planes) {
+    if (plane.session.empty() || !is_there(file.parent_path() / plane.session)) {
+      return unusable_description(fmt::format("{}: plane {}: session", file.string(), planes.size() + 1),
+                                  kCalibrationPage, "must name a session beside this file");
+    }
+    const double t = radians(plane.tilt_deg), a = radians(plane.azimuth_deg);
+    planes[plane.session] = {std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)};
   }
   return planes;
 }

@@ -13,7 +13,8 @@
 #include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/session_input.h"
 #include "core/files.h"
-#include "core/toml/toml_keys.h"
+#include "core/toml/field_toml.h"
+#include "core/toml/toml_json.h"
 #include "pipeline/conditions/drift.h"
 
 namespace weft::app {
@@ -27,34 +28,46 @@ Error bad_patches(const std::string& where, std::string why) {
           "give each [[patch]] a polygon_px of three corners or more inside the frame"};
 }
 
+/// A [[patch]] of patches.toml.
+struct PatchEntry {
+  Json polygon_px;
+  std::optional<double> height_mm, delta;
+};
+
+void describe(Fields& fields, PatchEntry& patch) {
+  fields.value({"polygon_px", "Three corners or more, [[x, y], ...]"}, patch.polygon_px);
+  fields.require(rows_of(patch.polygon_px, 2).value_or(std::vector<std::vector<double>>()).size() >= 3,
+                 "polygon_px", "must be three corners or more, [[x, y], ...]");
+  fields.value({"height_mm", "Where it lies; default as high as the tags", {-1000, 1000}}, patch.height_mm);
+  fields.value({"delta", "How it falls off; default as the paper of the lights", {-0.5, 0.99}}, patch.delta);
+}
+
+struct PatchFile {
+  std::vector<PatchEntry> patches;
+};
+
+void describe(Fields& fields, PatchFile& file) {
+  fields.list({.name = "patch", .says = "Where each lies", .need = kMustSay}, file.patches);
+}
+
 /// `common` holds what a patch is that does not say otherwise.
 Result<std::vector<WhitePatch>> read_patches(const fs::path& file, Size frame, const WhitePatch& common) {
-  const Result<toml::table> table = read_toml(file);
-  if (!table) return table.error();
-  TomlKeys keys(*table, file.string(), kCalibrationPage);
-  keys.know({"patch"});
-  const std::vector<const toml::table*> list = keys.tables("patch");
-  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
+  const Result<PatchFile> said = read_file<PatchFile>(file, kCalibrationPage);
+  if (!said) return said.error();
   std::vector<WhitePatch> patches;
-  for (const toml::table* entry : list) {
+  for (const PatchEntry& entry : said->patches) {
     WhitePatch& patch = patches.emplace_back(common);
-    const auto where = fmt::format("{}: patch {}", file.string(), patches.size());
-    TomlKeys patch_keys(*entry, where, kCalibrationPage);
-    patch_keys.know({"polygon_px", "height_mm", "delta"});
-    patch.height_mm = patch_keys.number_or("height_mm", *common.height_mm, -1000, 1000);
-    patch.delta = patch_keys.number_or("delta", common.delta, -0.5, 0.99);
-    if (Result<void> ok = patch_keys.status(); !ok) return std::move(ok).error();
-    const toml::array* corners = entry->get_as<toml::array>("polygon_px");
-    if (corners == nullptr) return bad_patches(where, "it has no polygon_px");
-    for (const toml::node& corner : *corners) {
-      const toml::array* xy = corner.as_array();
-      if (xy == nullptr || xy->size() != 2) return bad_patches(where, "a corner is not [x, y]");
-      const auto x = (*xy)[0].value<double>(), y = (*xy)[1].value<double>();
-      if (!x || !y || !(*x >= 0 && *x < frame.width && *y >= 0 && *y < frame.height))
-        return bad_patches(where, "a corner lies outside the frame");
-      patch.polygon_px.push_back({*x, *y});
+    patch.height_mm = entry.height_mm.value_or(*common.height_mm);
+    patch.delta = entry.delta.value_or(common.delta);
+    const auto corners = rows_of(entry.polygon_px, 2);
+    for (const std::vector<double>& corner : *corners) {
+      const double x = corner[0], y = corner[1];
+      if (!(x >= 0 && x < frame.width && y >= 0 && y < frame.height)) {
+        return bad_patches(fmt::format("{}: patch {}", file.string(), patches.size()),
+                           "a corner lies outside the frame");
+      }
+      patch.polygon_px.push_back({x, y});
     }
-    if (patch.polygon_px.size() < 3) return bad_patches(where, "it has fewer than three corners");
   }
   return patches;
 }

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/toml/field_toml.h"
-#include "core/toml/toml_keys.h"
+#include "core/toml/toml_json.h"
 
 namespace weft::app {
 namespace {
@@ -72,10 +72,7 @@ void describe(Fields& fields, SheetDescription& s) {
 }
 
 Result<TaggedSheet> read_sheet_file(const fs::path& file) {
-  const Result<toml::table> table = read_toml(file);
-  if (!table) return table.error();
-  const Result<SheetDescription> said =
-      read_fields<SheetDescription>(*table, file.string(), kCalibrationPage);
+  const Result<SheetDescription> said = read_file<SheetDescription>(file, kCalibrationPage);
   if (!said) return said.error();
   TaggedSheet out;
   calibration::Sheet& sheet = out.sheet;

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "core/files.h"
+#include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
-#include "core/toml/toml_keys.h"
 #include "library/metadata.h"
 
 namespace weft::app {
@@ -56,7 +56,10 @@ Result<void> take_key(const fs::path& file, const std::string& key, const Json& 
   }
   const std::string name = key == "barcode" ? "id" : key;
   if (std::ranges::find(kMetadataKeys, name) == kMetadataKeys.end()) {
-    return refused(file, key.substr(0, 40), "there is no such key");
+    std::vector<std::string> known = {"fabric", "barcode"};
+    for (const NumberKey& each : kNumbers) known.emplace_back(each.key);
+    known.insert(known.end(), kMetadataKeys.begin(), kMetadataKeys.end());
+    return refused(file, key.substr(0, 40), no_such_key(known, key));
   }
   if (Result<void> ok = library::check_new_metadata(Json{{name, value}}); !ok)
     return refused(file, key, ok.error().why);

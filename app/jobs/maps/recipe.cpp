@@ -11,8 +11,8 @@
 
 #include "core/files.h"
 #include "core/text.h"
+#include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
-#include "core/toml/toml_keys.h"
 
 namespace weft::app {
 namespace {
@@ -119,13 +119,11 @@ Result<RecipeStep> step_from_json(const Json& object, const std::string& where) 
     return unfit(where,
                  fmt::format("there is no step {}; the nearest is {}", name, nearest_of(name, step_kinds())));
   RecipeStep step = {name, Json::object()};
+  std::vector<std::string> known = {"do", "facts"};
+  for (const StepKey& key : kind->keys) known.emplace_back(key.name);
   for (const auto& [key, value] : object.items()) {
-    const bool is_known =
-        key == "do" || key == "facts" ||
-        std::ranges::any_of(kind->keys, [&key = key](const StepKey& k) { return key == k.name; });
-    if (is_known) continue;
-    const std::string nearest = kind->keys.empty() ? "" : "; the nearest is " + nearest_of(key, kind->keys);
-    return unfit(where, fmt::format("{} has no key {}{}", name, key, nearest));
+    if (std::ranges::find(known, key) == known.end())
+      return unfit(fmt::format("{}: {}", where, key), no_such_key(known, key));
   }
   for (const StepKey& key : kind->keys) {
     const Json& value = object.contains(key.name) ? object[key.name] : key.otherwise;
@@ -282,12 +280,13 @@ Result<Recipe> read_recipe(const fs::path& file) {
   }
   const Result<toml::table> table = read_toml(file);
   if (!table) return table.error();
+  std::vector<std::string> known = {"step", "recipe"};
+  for (const RecipeStepKind& kind : step_kinds()) known.emplace_back(kind.name);
   Json document = Json::object();
   for (const auto& [node_key, value] : *table) {
     const std::string key(node_key.str());
-    if (key != "step" && key != "recipe" && !is_kind(key))
-      return unfit(file.string(),
-                   fmt::format("there is no key {}, only step, recipe and names of steps", key));
+    if (std::ranges::find(known, key) == known.end())
+      return unfit(fmt::format("{}: {}", file.string(), key), no_such_key(known, key));
     document[key == "step" ? "steps" : key] = weft::json_of(value);
   }
   if (table->empty()) document["steps"] = Json::array();

@@ -8,7 +8,7 @@
 
 #include "app/jobs/material/material_keys.h"
 #include "core/number.h"
-#include "core/text.h"
+#include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 
 namespace weft::app {
@@ -83,11 +83,9 @@ class MaterialParser {
     for (const auto& [name, each] : value.items()) {
       const auto parameter = material::parameter_named(name);
       if (!parameter) {
-        const auto nearest = std::ranges::min_element(
-            material::parameters(), {},
-            [&key = name](const ParameterFacts& f) { return edit_distance(key, f.name); });
-        return unfit_material(in, name,
-                              fmt::format("there is no such parameter; the nearest is {}", nearest->name));
+        std::vector<std::string> names;
+        for (const ParameterFacts& facts : material::parameters()) names.emplace_back(facts.name);
+        return unfit_material(in, name, no_such_key(names, name));
       }
       Result<Json> read = value_of_parameter(*parameter, each, in);
       if (!read) return std::move(read).error();

@@ -10,6 +10,7 @@
 
 #include "app/jobs/material/material_file.h"
 #include "core/text.h"
+#include "core/toml/field_toml.h"
 #include "material/filtering/gloss.h"
 
 namespace weft::app {
@@ -219,9 +220,9 @@ Result<const MaterialKey*> known_key(const std::string& name, std::span<const Ma
                                      const WrittenIn& in) {
   const auto found = std::ranges::find_if(known, [&](const MaterialKey& key) { return name == key.name; });
   if (found != known.end()) return &*found;
-  const auto nearest = std::ranges::min_element(
-      known, {}, [&](const MaterialKey& key) { return edit_distance(name, key.name); });
-  return unfit_material(in, name, fmt::format("there is no such key; the nearest is {}", nearest->name));
+  std::vector<std::string> names;
+  for (const MaterialKey& key : known) names.emplace_back(key.name);
+  return unfit_material(in, name, no_such_key(names, name));
 }
 
 Result<Json> value_of_key(const MaterialKey& key, const Json& value, const WrittenIn& in) {

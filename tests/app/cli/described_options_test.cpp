@@ -17,7 +17,7 @@
 #include "core/field_json.h"
 #include "core/files.h"
 #include "core/toml/field_toml.h"
-#include "core/toml/toml_keys.h"
+#include "core/toml/toml_json.h"
 #include "tests/core/places.h"
 
 namespace weft::app {

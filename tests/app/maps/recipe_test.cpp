@@ -93,7 +93,7 @@ TEST(Recipe, NamesTheNearestStepAndKey) {
   EXPECT_THAT(refusal_of(R"({"steps": [{"do": "flaten"}]})"),
               AllOf(HasSubstr("step 1"), HasSubstr("the nearest is flatten")));
   EXPECT_THAT(refusal_of(R"({"steps": [{"do": "tile"}, {"do": "tile", "repeat": [1, 1]}]})"),
-              AllOf(HasSubstr("step 2"), HasSubstr("no key repeat; the nearest is repeats")));
+              AllOf(HasSubstr("step 2: repeat"), HasSubstr("there is no such key; the nearest is repeats")));
 }
 
 TEST(Recipe, RefusesValuesThatAreOutOfTheirRangeOrNoneAtAll) {

@@ -21,9 +21,8 @@ std::string said_of(const std::string& text) {
 }
 
 TEST(MaterialErrors, OfTheTextNameFileKeyAndTheNearestWord) {
-  EXPECT_THAT(
-      said_of("[surface]\nrougness = 0.5\n"),
-      HasSubstr("/m/cloth.toml: [surface] rougness: there is no such parameter; the nearest is roughness"));
+  EXPECT_THAT(said_of("[surface]\nrougness = 0.5\n"),
+              HasSubstr("/m/cloth.toml: [surface] rougness: there is no such key; the nearest is roughness"));
   EXPECT_THAT(said_of("inherit = \"a.toml\"\n"),
               HasSubstr("/m/cloth.toml: inherit: there is no such key; the nearest is inherits"));
   EXPECT_THAT(said_of("[[layer]]\nname = \"dust\"\nmaterial = \"library:dust\"\nmsk = 1\n"),

@@ -49,8 +49,8 @@ TEST(PresetFile, IsReadAsItIsWritten) {
 TEST(PresetFile, NamesTheNearestOfWhatItDoesNotKnow) {
   expect_refused(with(kGood, "bits", "bit"), {"mine.toml: file 1: bit", "the nearest is bits"});
   expect_refused(with(kGood, "normal.y", "normal.u"), {"file 1: channels", "no channel normal.u"});
-  expect_refused(with(kGood, "directx", "directz"), {"mine.toml: normal", "the nearest is directx"});
-  expect_refused(with(kGood, "bits = 16", "encoding = \"pgn\""), {"encoding", "the nearest is png"});
+  expect_refused(with(kGood, "directx", "directz"), {"mine.toml: normal", "did you mean 'directx'"});
+  expect_refused(with(kGood, "bits = 16", "encoding = \"pgn\""), {"encoding", "did you mean 'png'"});
   expect_refused(with(kGood, "says", "say"), {"mine.toml: say", "the nearest is says"});
 }
 
@@ -62,7 +62,7 @@ TEST(PresetFile, RefusesWhatAnEncodingCannotHold) {
       with(with(kGood, "_n.png", "_n.dds"), "bits = 16", "encoding = \"dds\"\nblocks = \"bc5\"");
   expect_refused(dds, {"channels", "3 are named where dds, bc5 holds 2"});
   EXPECT_TRUE(preset_from_toml(with(dds, ", \"normal.z\"", ""), "mine.toml"));
-  expect_refused(with(dds, "blocks = \"bc5\"", "blocks = \"bc6\""), {"blocks", "none of bc1"});
+  expect_refused(with(dds, "blocks = \"bc5\"", "blocks = \"bc6\""), {"blocks", "must be one of bc1, bc3"});
   expect_refused(with(kGood, "bits = 16", "blocks = \"bc5\""), {"only a dds has blocks"});
 }
 
