@@ -238,11 +238,8 @@ class HttpServer::Parser : public httplib::Server {
   /// Lets the streams of cpp-httplib run: it ends them where it does not listen.
   void begin(HttpDoor& door) {
     svr_sock_ = door.socket();
-    for (const auto& [pool, threads] :
-         {std::pair(Pool::kQuick, limits_.quick), std::pair(Pool::kDisk, limits_.disk),
-          std::pair(Pool::kPictures, limits_.pictures), std::pair(Pool::kTiles, limits_.tiles),
-          std::pair(Pool::kFiles, limits_.files), std::pair(Pool::kDevices, limits_.devices),
-          std::pair(Pool::kStreams, limits_.streams + 1)}) {
+    limits_.threads[Pool::kStreams] = limits_.streams + 1;
+    for (const auto& [pool, threads] : limits_.threads) {
       pools_[pool] = std::make_unique<Threads>(threads, threads + limits_.waiting);
     }
     door.begin([this, &door](WholeRequest request) { enter(std::move(request), door); });

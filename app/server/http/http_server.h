@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,8 +17,8 @@ namespace weft::app {
 /// What clients may take of the server, so that no number of them keeps the others out.
 struct HttpLimits {
   DoorLimits door;
-  std::size_t quick = 8, disk = 16, pictures = 24, tiles = 4, files = 8,
-              devices = 4;   ///< threads of each pool
+  std::map<Pool, std::size_t> threads = {{Pool::kQuick, 8}, {Pool::kDisk, 16}, {Pool::kPictures, 24},
+                                         {Pool::kTiles, 4}, {Pool::kFiles, 8}, {Pool::kDevices, 4}};
   std::size_t waiting = 32;  ///< requests that wait for a thread of their pool; one more is answered with 503
   std::size_t streams = 16;  ///< of events at once; one more is answered with 503
   double heartbeat_s = 1;    ///< between events of a stream at most

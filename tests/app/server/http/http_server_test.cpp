@@ -73,7 +73,7 @@ TEST(HttpServer, AnswersOthersWhileEveryThreadOfAKindWaits) {
   std::atomic<bool> hangs = true;
   EventLog events;
   HttpLimits limits;
-  limits.disk = 2, limits.waiting = 3;
+  limits.threads[Pool::kDisk] = 2, limits.waiting = 3;
   const auto said = [](const Call&) -> Result<Reply> { return json_reply({{"status", "ok"}}); };
   const std::vector<Route> routes = {{"GET", "/files/{name}",
                                       [&](const Call& call) {
@@ -189,7 +189,7 @@ TEST(HttpServer, KeepsAConnectionUntilItHasBeenIdleForLong) {
 TEST(HttpServer, AnswersOthersBesideClientsThatDoNotRead) {
   EventLog events;
   HttpLimits limits;
-  limits.quick = 1;
+  limits.threads[Pool::kQuick] = 1;
   const Reply large = {200, "application/octet-stream", std::string(8'000'000, 'a')};
   const std::vector<Route> routes = {
       {"GET", "/large", [large](const Call&) -> Result<Reply> { return large; }, false, Pool::kQuick},
@@ -211,7 +211,7 @@ TEST(HttpServer, AnswersOthersBesideClientsThatDoNotRead) {
 TEST(HttpServer, GivesTheOldestAnswerUpWhereTooMuchIsNotTaken) {
   EventLog events;
   HttpLimits limits;
-  limits.quick = 1;
+  limits.threads[Pool::kQuick] = 1;
   limits.door.answer_bytes = 40'000'000;
   const Reply large = {200, "application/octet-stream", std::string(24'000'000, 'a')};
   const std::vector<Route> routes = {
