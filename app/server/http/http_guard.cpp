@@ -106,7 +106,8 @@ std::optional<Credential> credential_of(const Visitor& visitor, const GuardRules
 
 bool is_open(const Visitor& visitor, const GuardRules& rules) {
   const std::string call = visitor.method + " " + visitor.path;
-  return std::ranges::any_of(rules.open, [&](const std::string& pattern) { return fits(pattern, call); });
+  return std::ranges::any_of(
+      rules.open, [&](const std::string& pattern) { return segments_in(pattern, call).has_value(); });
 }
 
 /// What a browser fetches for a page of another site or port. Who follows a link to the page itself may.

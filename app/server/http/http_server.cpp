@@ -17,7 +17,6 @@
 #include <chrono>
 #include <map>
 #include <memory>
-#include <regex>
 #include <string_view>
 #include <utility>
 
@@ -95,8 +94,8 @@ class RequestStream : public httplib::Stream {
   std::string answer_;
 };
 
-std::string pattern_of(const std::string& path) {
-  return std::regex_replace(path, std::regex(R"(\{[a-z]+\})"), "([^/]+)");
+std::string_view path_of(std::string_view target) {
+  return target.substr(0, target.find('?'));
 }
 
 /// From a file, or from a text that is not to be compressed: its tag names these bytes.
@@ -168,7 +167,6 @@ void answer(const Error& error, int status, const httplib::Request& request, htt
 
 Call call_of(const httplib::Request& request) {
   Call call;
-  for (std::size_t i = 1; i < request.matches.size(); ++i) call.segments.push_back(request.matches[i].str());
   for (const auto& [key, value] : request.params) call.query.emplace(key, value);
   call.body = request.body;
   call.if_none_match = request.get_header_value("If-None-Match");
@@ -219,19 +217,22 @@ class HttpServer::Parser : public httplib::Server {
  public:
   Parser(GuardRules rules, std::vector<Route> routes, EventLog& events, const HttpLimits& limits)
       : rules_(std::move(rules)), routes_(std::move(routes)), events_(events), limits_(limits) {
-    set_payload_max_length(limits.door.frame.body_bytes);
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       return guard(request, response) ? HandlerResponse::Handled : HandlerResponse::Unhandled;
     });
     set_post_routing_handler(finish_headers);
-    set_error_handler(Handler([this](const httplib::Request& request, httplib::Response& response) {
+    set_error_handler(Handler([](const httplib::Request& request, httplib::Response& response) {
       if (response.body.empty()) explain(request, response);
     }));
     set_exception_handler([](const httplib::Request& request, httplib::Response& response,
                              const std::exception_ptr& thrown) { fail(request, response, thrown); });
+    const Handler handle = [this](const httplib::Request& request, httplib::Response& response) {
+      answer_call(request, response);
+    };
+    constexpr const char* kAnyPath = R"([\s\S]*)";
+    Get(kAnyPath, handle).Post(kAnyPath, handle).Patch(kAnyPath, handle).Delete(kAnyPath, handle);
     for (const Route& route : routes_) {
       if (route.open) rules_.open.push_back(route.method + " " + route.path);
-      add(route);
     }
   }
 
@@ -281,12 +282,19 @@ class HttpServer::Parser : public httplib::Server {
   }
 
   Pool pool_of(std::string_view request) const {
-    const std::size_t space = request.find(' ') + 1;
-    const std::string_view path = request.substr(space, request.find_first_of(" ?", space) - space);
-    const auto route =
-        std::ranges::find_if(routes_, [&](const Route& each) { return fits(each.path, path); });
-    if (route == routes_.end()) return Pool::kQuick;
+    const std::size_t space = request.find(' '), end = request.find(' ', space + 1);
+    const Route* route = route_of(request.substr(0, space), request.substr(space + 1, end - space - 1));
+    if (route == nullptr) return Pool::kQuick;
     return route->handle ? route->pool : Pool::kStreams;
+  }
+
+  /// By the path as it was sent, so that a call is answered by the threads that are its own.
+  const Route* route_of(std::string_view method, std::string_view target) const {
+    const std::string_view path = path_of(target);
+    const auto route = std::ranges::find_if(routes_, [&](const Route& each) {
+      return each.method == (method == "HEAD" ? "GET" : method) && segments_in(each.path, path);
+    });
+    return route == routes_.end() ? nullptr : &*route;
   }
 
   AnsweredRequest answered(WholeRequest request, Pool pool) {
@@ -310,27 +318,27 @@ class HttpServer::Parser : public httplib::Server {
     return refused.has_value();
   }
 
-  void add(const Route& route) {
-    const Handler handle = [this, &route](const httplib::Request& request, httplib::Response& response) {
-      if (!route.handle) return stream_events(route, request, response);
-      Call call = call_of(request);
-      call.port = rules_.port;
-      const Result<Reply> reply = route.handle(call);
-      if (reply) return answer(*reply, route.open ? "public" : "private", request, response);
-      answer(reply.error(), http_status_of(reply.error().kind), request, response);
-    };
-    if (route.method == "GET") Get(pattern_of(route.path), handle);
-    if (route.method == "POST") Post(pattern_of(route.path), handle);
-    if (route.method == "PATCH") Patch(pattern_of(route.path), handle);
-    if (route.method == "DELETE") Delete(pattern_of(route.path), handle);
+  void answer_call(const httplib::Request& request, httplib::Response& response) {
+    const Route* route = route_of(request.method, request.target);
+    auto segments = route == nullptr ? std::nullopt : segments_in(route->path, request.path);
+    if (!segments) {
+      const auto is_path = [path = path_of(request.target)](const Route& each) {
+        return segments_in(each.path, path).has_value();
+      };
+      response.status = route == nullptr && std::ranges::any_of(routes_, is_path) ? 405 : 404;
+      return explain(request, response);
+    }
+    Call call = call_of(request);
+    call.segments = std::move(*segments);
+    call.port = rules_.port;
+    if (!route->handle) return stream_events(*route, std::move(call), request, response);
+    const Result<Reply> reply = route->handle(call);
+    if (reply) return answer(*reply, route->open ? "public" : "private", request, response);
+    answer(reply.error(), http_status_of(reply.error().kind), request, response);
   }
 
-  /// An error of cpp-httplib's own.
-  void explain(const httplib::Request& request, httplib::Response& response) const {
-    const auto fits = [&](const Route& route) {
-      return std::regex_match(request.path, std::regex(pattern_of(route.path)));
-    };
-    if (response.status == 404 && std::ranges::any_of(routes_, fits)) response.status = 405;
+  /// An error of routing or of cpp-httplib.
+  static void explain(const httplib::Request& request, httplib::Response& response) {
     const int status = response.status;
     answer(Error{status == 404 ? ErrorKind::kNoInput : ErrorKind::kUsage,
                  status == 404   ? "there is no such call"
@@ -354,7 +362,8 @@ class HttpServer::Parser : public httplib::Server {
            request, response);
   }
 
-  void stream_events(const Route& route, const httplib::Request& request, httplib::Response& response) {
+  void stream_events(const Route& route, Call call, const httplib::Request& request,
+                     httplib::Response& response) {
     if (++streams_ > limits_.streams) {
       --streams_;
       return answer(Error{ErrorKind::kTryAgain, "too many clients follow this rig", request.path,
@@ -364,7 +373,7 @@ class HttpServer::Parser : public httplib::Server {
     response.set_header("Cache-Control", "no-store");
     response.set_chunked_content_provider(
         "text/event-stream",
-        [this, &route, call = call_of(request), follower = follower_of(request)](
+        [this, &route, call = std::move(call), follower = follower_of(request)](
             std::size_t, httplib::DataSink& sink) mutable {
           if (route.follows) route.follows(call);
           return send_next(follower, sink);

@@ -3,15 +3,19 @@
 
 namespace weft::app {
 
-bool fits(std::string_view pattern, std::string_view path) {
+std::optional<std::vector<std::string>> segments_in(std::string_view pattern, std::string_view path) {
+  std::vector<std::string> segments;
   while (!pattern.empty() && !path.empty()) {
     const std::string_view wanted = pattern.substr(0, pattern.find('/', 1));
     const std::string_view is = path.substr(0, path.find('/', 1));
-    if (!wanted.starts_with("/{") && wanted != is) return false;
+    const bool takes_any = wanted.starts_with("/{");
+    if (takes_any ? is.size() < 2 : wanted != is) return std::nullopt;
+    if (takes_any) segments.emplace_back(is.substr(1));
     pattern.remove_prefix(wanted.size());
     path.remove_prefix(is.size());
   }
-  return pattern.empty() && path.empty();
+  if (!pattern.empty() || !path.empty()) return std::nullopt;
+  return segments;
 }
 
 }  // namespace weft::app

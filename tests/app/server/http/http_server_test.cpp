@@ -113,6 +113,41 @@ TEST(HttpServer, AnswersOthersWhileEveryThreadOfAKindWaits) {
   for (RawClient& client : held) EXPECT_EQ(parsed(client.hear(std::chrono::seconds(5))).status, 200);
 }
 
+/// Which threads answer a call is known before it is parsed: the same words must lead to the same call then.
+TEST(HttpServer, AnswersACallByItsOwnThreadsAlone) {
+  std::atomic<bool> hangs = true;
+  EventLog events;
+  HttpLimits limits;
+  limits.threads[Pool::kQuick] = 1;
+  const auto ok = [](const Call&) -> Result<Reply> { return json_reply({{"status", "ok"}}); };
+  const auto hang = [&](const Call& call) {
+    hangs.wait(true);
+    return ok(call);
+  };
+  const std::vector<Route> routes = {{"GET", "/devices", ok, false, Pool::kQuick},
+                                     {"POST", "/devices", hang, false, Pool::kDevices},
+                                     {"GET", "/files/{name}", hang},
+                                     {"GET", "/events", {}}};
+  const auto server = HttpServer::start(0, {"127.0.0.1", ""}, routes, events, limits);
+  ASSERT_TRUE(server) << server.error().message();
+  const int port = (*server)->port();
+  for (const char* other :
+       {"/%65vents", "/f%69les/a", "/files%2fa", "/files/a%2fb", "/files/", "/devices/"}) {
+    EXPECT_EQ(ask(port, "GET", other).status, 404) << other << " is no other spelling of a call";
+  }
+  EXPECT_EQ(ask(port, "DELETE", "/files/a").status, 405);
+  RawClient opens(port), reads(port);
+  ASSERT_TRUE(opens.say(request_text(port, "POST", "/devices", "{}")));
+  ASSERT_TRUE(reads.say(request_text(port, "GET", "/files/a%62")));
+  EXPECT_EQ(ask(port, "GET", "/devices").status, 200) << "the one quick thread waits for no device";
+  hangs = false;
+  hangs.notify_all();
+  for (RawClient* client : {&opens, &reads}) {
+    EXPECT_EQ(parsed(client->hear(std::chrono::seconds(5))).status, 200);
+  }
+  events.close();
+}
+
 Result<Reply> said(const std::string& words) {
   return json_reply({{"said", words}});
 }
