@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/accuracy/scenes.h"
-#include "bench/base/report.h"
+#include "bench/base/study.h"
 #include "core/result.h"
 
 namespace weft::bench {

@@ -6,7 +6,7 @@
 
 #include "bench/accuracy/accuracy.h"
 #include "bench/accuracy/scenes.h"
-#include "bench/base/report.h"
+#include "bench/base/study.h"
 #include "core/result.h"
 #include "solver/method.h"
 

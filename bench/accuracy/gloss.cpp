@@ -349,9 +349,8 @@ Result<Rows> gloss_table(const AccuracyTableOptions& options) {
     if (!options.scene.empty() && options.scene != cloth.name) continue;
     for (const AccuracyScene& scene : accuracy_scenes(options.set, options.seed, false)) {
       if (scene.material != "satin" || (cloth.is_level && scene.family != "smooth")) continue;
-      Result<Json> row = row_of(scene_of(scene, cloth), cloth, threads);
-      if (!row) return std::move(row).error();
-      rows.push_back(std::move(*row));
+      if (Result<void> ok = add_row(rows, row_of(scene_of(scene, cloth), cloth, threads)); !ok)
+        return ok.error();
     }
   }
   if (!rows.empty()) return rows;

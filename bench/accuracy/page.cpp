@@ -16,7 +16,6 @@
 #include "bench/accuracy/score.h"
 #include "core/files.h"
 #include "core/parallel.h"
-#include "core/process.h"
 #include "core/solve_record.h"
 #include "core/temporary_folder.h"
 
@@ -252,23 +251,9 @@ std::string advice(const Rows& table) {
 // What `weft solve --explain` says of a plain weave.
 Result<std::string> explain_listing(const std::filesystem::path& program) {
   const TemporaryFolder scratch;
-  const std::filesystem::path session = scratch.path() / "plain.weft", log = scratch.path() / "log";
-  const std::vector<std::vector<std::string>> commands = {
-      {program.string(), "simulate", kListedScene, "-o", session.string(), "--quiet"},
-      {program.string(), "solve", session.string(), "--explain", "--quiet"}};
-  std::string said;
-  for (const std::vector<std::string>& command : commands) {
-    auto process = ChildProcess::start(command, {}, log);
-    if (!process) return std::move(process).error();
-    constexpr double kPatience_s = 600;
-    const std::optional<int> code = (*process)->wait(kPatience_s);
-    said = (*process)->said();
-    if (code != 0) {
-      return Error{ErrorKind::kInputOutput, "weft did not end well", command[1], said,
-                   "run the same command by hand"};
-    }
-  }
-  return said;
+  const std::string session = scratch.path() / "plain.weft";
+  const auto simulated = run_weft({"simulate", kListedScene, "-o", session, "--quiet"}, program);
+  return simulated ? run_weft({"solve", session, "--explain", "--quiet"}, program) : simulated;
 }
 
 struct FigurePart {

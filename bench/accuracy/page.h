@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/accuracy/accuracy.h"
-#include "bench/base/report.h"
+#include "bench/base/study.h"
 #include "core/result.h"
 #include "report/plot_svg.h"
 

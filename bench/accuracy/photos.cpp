@@ -267,9 +267,8 @@ Result<Rows> photos_table(const PhotosOptions& options) {
     if (!photographs) return photographs.error();
     for (const solver::MethodName& name : *methods) {
       if (!wants_this(name)) continue;
-      Result<Json> row = row_of(name, *photographs, *subsets, *truth, threads);
-      if (!row) return std::move(row).error();
-      rows.push_back(std::move(*row));
+      if (Result<void> ok = add_row(rows, row_of(name, *photographs, *subsets, *truth, threads)); !ok)
+        return ok.error();
     }
   }
   return rows;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/base/report.h"
+#include "bench/base/study.h"
 #include "core/result.h"
 #include "core/vec.h"
 

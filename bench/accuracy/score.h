@@ -9,31 +9,14 @@
 #include <vector>
 
 #include "bench/accuracy/scenes.h"
-#include "bench/base/report.h"
 #include "bench/base/solved_maps.h"
+#include "bench/base/study.h"
 #include "core/result.h"
 #include "pipeline/frame.h"
 #include "pipeline/reference.h"
 #include "solver/method.h"
 
 namespace weft::bench {
-
-/// The patches of a scene with the Cramer-Rao bound of each pixel: rms degrees for the lights that the point
-/// faces and sees.
-struct BoundedPatches {
-  std::vector<Patch> patches;
-  std::vector<Image<float>> bounds;
-};
-BoundedPatches with_bounds(std::vector<Patch> patches, int threads);
-
-/// Errors and time of one contender on the patches of one scene, as accuracy_table() describes them, without
-/// what compares it with others.
-Result<Json> score(const Contender& contender, const BoundedPatches& scene, int threads);
-
-/// The mean of rows that belong together: of every number that is no integer.
-Json mean_row(const std::vector<const Json*>& rows);
-
-double number(const Json& row, const char* key);
 
 /// A way from a patch's readings to its maps, on so many threads.
 using SolvePatch = std::function<Result<void>(const Patch& patch, int threads, SolvedMaps& maps)>;
@@ -77,5 +60,22 @@ Result<void> solve_images(const solver::Method& method, const std::vector<View<c
 std::vector<View<const float>> planes_of(const Image<float>& readings);
 
 Error no_such(const char* what, const std::string& name, const std::vector<std::string>& names);
+
+/// The patches of a scene with the Cramer-Rao bound of each pixel: rms degrees for the lights that the point
+/// faces and sees.
+struct BoundedPatches {
+  std::vector<Patch> patches;
+  std::vector<Image<float>> bounds;
+};
+BoundedPatches with_bounds(std::vector<Patch> patches, int threads);
+
+/// Errors and time of one contender on the patches of one scene, as accuracy_table() describes them, without
+/// what compares it with others.
+Result<Json> score(const Contender& contender, const BoundedPatches& scene, int threads);
+
+/// The mean of rows that belong together: of every number that is no integer.
+Json mean_row(const std::vector<const Json*>& rows);
+
+double number(const Json& row, const char* key);
 
 }  // namespace weft::bench

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "bench/base/report.h"
 #include "bench/base/rig.h"
+#include "bench/base/study.h"
 #include "core/parallel.h"
 #include "core/temporary_folder.h"
 #include "simulator/camera/dng_writer.h"

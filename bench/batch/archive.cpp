@@ -8,15 +8,12 @@
 
 #include "core/files.h"
 #include "core/json_document.h"
-#include "core/process.h"
 #include "simulator/simulate.h"
 
 namespace weft::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kLongest_s = 4 * 3600;
 
 // A session with the photographs of another.
 Result<void> link_to(const fs::path& own, const fs::path& folder, int number) {
@@ -66,23 +63,6 @@ Result<void> make_archive(const fs::path& folder, const fs::path& scene_file, do
     scene->seed += 1;
   }
   return {};
-}
-
-Result<int> run_program(const std::vector<std::string>& arguments, const fs::path& log) {
-  std::vector<std::string> command = {program_beside("weft").string()};
-  command.insert(command.end(), arguments.begin(), arguments.end());
-  const Result<std::unique_ptr<ChildProcess>> child = ChildProcess::start(command, {}, log);
-  if (!child) return child.error();
-  const std::optional<int> code = (*child)->wait(kLongest_s);
-  if (code) return *code;
-  return Error{ErrorKind::kTryAgain, "weft did not end", command[0], fmt::format("within {} s", kLongest_s),
-               ""};
-}
-
-Error ended_with(const std::string& verb, int code, const fs::path& log) {
-  const Result<std::string> said = read_text(log);
-  return {ErrorKind::kInternal, fmt::format("weft batch {} ended with {}", verb, code), log.string(),
-          said ? said->substr(0, 2000) : "", ""};
 }
 
 }  // namespace weft::bench

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "core/result.h"
 #include "simulator/scene/scene.h"
@@ -23,11 +21,5 @@ Result<void> simulate_own(const std::filesystem::path& folder, const simulator::
 
 /// The folder of one of them.
 std::filesystem::path session_in(const std::filesystem::path& folder, int number);
-
-/// Runs weft, its output into `log`, and returns its exit code. kNoInput.
-Result<int> run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log);
-
-/// That `weft batch VERB` ended with this code, and what it said.
-Error ended_with(const std::string& verb, int code, const std::filesystem::path& log);
 
 }  // namespace weft::bench

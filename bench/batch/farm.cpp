@@ -23,7 +23,6 @@
 #include "bench/batch/archive.h"
 #include "bench/batch/farm_simulation.h"
 #include "core/parallel.h"
-#include "core/process.h"
 #include "core/temporary_folder.h"
 
 namespace weft::bench {
@@ -327,9 +326,8 @@ Result<Json> held_against_real(const StudyOptions& options) {
                  log = folder.path() / "log";
   if (Result<void> made = make_archive(archive, options.scene, options.megapixels, sessions, 4); !made)
     return std::move(made).error();
-  const Result<int> planned = run_program({"batch", "plan", archive.string(), "-o", plan.string(), "--sample",
-                                           "1", "--task-minutes", "0.001", "-q"},
-                                          log);
+  const Result<std::string> planned = run_weft({"batch", "plan", archive.string(), "-o", plan.string(),
+                                                "--sample", "1", "--task-minutes", "0.001", "-q"});
   if (!planned) return planned.error();
   const Result<app::PlanFile> file = app::open_plan(plan);
   if (!file) return file.error();

@@ -23,9 +23,7 @@
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/job.h"
-#include "core/json_document.h"
 #include "core/parallel.h"
-#include "core/process.h"
 #include "core/solve.h"
 #include "core/temporary_folder.h"
 #include "simulator/scene/scene.h"
@@ -54,8 +52,7 @@ Result<Rows> batch_local(const StudyOptions& options, int jobs) {
   const int sessions = options.runs;
   const int threads = resolved_threads(options.threads);
   const TemporaryFolder folder;
-  const fs::path archive = folder.path() / "archive", log = folder.path() / "log",
-                 plan = folder.path() / "plan.jsonl";
+  const fs::path archive = folder.path() / "archive", plan = folder.path() / "plan.jsonl";
   if (Result<void> made = make_archive(archive, options.scene, options.megapixels, sessions, 4); !made)
     return made.error();
   const Result<double> in_turn = solve_in_turn(archive, folder.path() / "in-turn", sessions, threads);
@@ -64,20 +61,16 @@ Result<Rows> batch_local(const StudyOptions& options, int jobs) {
   fs::remove_all(folder.path() / "in-turn", ignored);
 
   const std::string cores = std::to_string(threads);
-  Result<int> code =
-      run_program({"batch", "plan", archive.string(), "-o", plan.string(), "--sample", "8", "--output",
-                   (folder.path() / "solves").string(), "--threads", cores, "--json", "-q"},
-                  log);
-  if (!code) return code.error();
-  if (*code != 0) return ended_with("plan", *code, log);
-  const Json planned = Json::parse(*read_text(log), nullptr, false);
+  const Result<std::string> planned =
+      run_weft({"batch", "plan", archive.string(), "-o", plan.string(), "--sample", "8", "--output",
+                (folder.path() / "solves").string(), "--threads", cores, "--json", "-q"});
+  if (!planned) return planned.error();
   Stopwatch watch;
-  code = run_program(
-      {"batch", "run", plan.string(), "-q", "--jobs", std::to_string(jobs), "--threads", cores}, log);
+  const Result<std::string> ran =
+      run_weft({"batch", "run", plan.string(), "-q", "--jobs", std::to_string(jobs), "--threads", cores});
   const double batch_s = watch.lap();
-  if (!code) return code.error();
-  if (*code != 0) return ended_with("run", *code, log);
-  const double predicted_s = 3600 * planned["hours"].get<double>();
+  if (!ran) return ran.error();
+  const double predicted_s = 3600 * Json::parse(*planned)["hours"].get<double>();
   return Rows{{{"sessions", sessions},
                {"megapixels", options.megapixels},
                {"threads", threads},
@@ -118,21 +111,16 @@ batch::Outcome outcome_of(const batch::Plan& plan, const batch::Job& job, int nu
 Result<Rows> batch_plan(const StudyOptions& options) {
   const int sessions = options.runs;
   const TemporaryFolder folder;
-  const fs::path archive = folder.path() / "archive", log = folder.path() / "log";
+  const fs::path archive = folder.path() / "archive";
   if (Result<void> made = make_archive(archive, options.scene, options.megapixels, sessions, kOwn); !made)
     return made.error();
   Stopwatch watch;
-  const Result<int> code = run_program(
-      {"batch", "plan", archive.string(), "-o", (folder.path() / "plan.jsonl").string(), "--sample",
-       std::to_string(kSample), "--json", "-q", "--threads", std::to_string(options.threads)},
-      log);
+  const Result<std::string> said =
+      run_weft({"batch", "plan", archive.string(), "-o", (folder.path() / "plan.jsonl").string(), "--sample",
+                std::to_string(kSample), "--json", "-q", "--threads", std::to_string(options.threads)});
   const double wall_s = watch.lap();
-  if (!code) return code.error();
-  const Result<std::string> said = read_text(log);
-  const Json planned = said ? Json::parse(*said, nullptr, false) : Json();
-  if (*code != 0 || !planned.is_object())
-    return Error{ErrorKind::kInternal, fmt::format("weft batch plan ended with {}", *code), log.string(),
-                 said ? said->substr(0, 2000) : "", ""};
+  if (!said) return said.error();
+  const Json planned = Json::parse(*said);
   const double sample_s = planned["sample_seconds"].get<double>();
   return Rows{{{"sessions", planned["sessions"]},
                {"tasks", planned["tasks"]},
@@ -145,8 +133,7 @@ Result<Rows> batch_plan(const StudyOptions& options) {
 Result<Rows> batch_merge(const StudyOptions& options) {
   const int sessions = options.runs;
   const TemporaryFolder folder;
-  const fs::path archive = folder.path() / "archive", file = folder.path() / "plan.jsonl",
-                 log = folder.path() / "log";
+  const fs::path archive = folder.path() / "archive", file = folder.path() / "plan.jsonl";
   batch::Plan plan;
   plan.header.archive = archive.string();
   for (int i = 0; i < sessions; ++i) {
@@ -176,14 +163,9 @@ Result<Rows> batch_merge(const StudyOptions& options) {
     std::ofstream(opened->results_of(job.task), std::ios::app) << batch::line_of(outcome);
   }
   Stopwatch watch;
-  const Result<int> code = run_program({"batch", "merge", file.string(), "-q"}, log);
+  const Result<std::string> merged = run_weft({"batch", "merge", file.string(), "-q"});
   const double merge_s = watch.lap();
-  if (!code) return code.error();
-  if (*code != 0) {
-    const Result<std::string> said = read_text(log);
-    return Error{ErrorKind::kInternal, fmt::format("weft batch merge ended with {}", *code), log.string(),
-                 said ? said->substr(0, 2000) : "", ""};
-  }
+  if (!merged) return merged.error();
   return Rows{
       {{"results", sessions}, {"tasks", plan.header.tasks.size()}, {"merge_s", merge_s}, {"asked_s", 30}}};
 }
@@ -232,8 +214,8 @@ Result<Rows> batch_kills(const StudyOptions& options, int kills) {
                  log = folder.path() / "log";
   if (Result<void> made = make_archive(archive, options.scene, options.megapixels, sessions, 4); !made)
     return made.error();
-  const Result<int> planned =
-      run_program({"batch", "plan", archive.string(), "-o", plan.string(), "--sample", "1", "-q"}, log);
+  const Result<std::string> planned =
+      run_weft({"batch", "plan", archive.string(), "-o", plan.string(), "--sample", "1", "-q"});
   if (!planned) return planned.error();
   const Result<Killed> killed = run_and_kill(plan, log, kills);
   if (!killed) return killed.error();
@@ -335,15 +317,13 @@ Calibration misplaced(Calibration calibration, double by_mm) {
 
 // Plans and solves the archive into `folder`, and reads what came of it.
 Result<app::MergeReport> solve_all(const fs::path& folder, const fs::path& archive, int threads) {
-  const fs::path plan = folder / "plan.jsonl", log = folder / "log";
+  const fs::path plan = folder / "plan.jsonl";
   const std::string cores = std::to_string(threads);
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"batch", "plan", archive.string(), "-o", plan.string(), "--sample", "0",
                                  "--output", (folder / "solves").string(), "-q"},
         {"batch", "run", plan.string(), "-q", "--threads", cores}}) {
-    const Result<int> code = run_program(arguments, log);
-    if (!code) return code.error();
-    if (*code != 0) return ended_with(arguments[1], *code, log);
+    if (const Result<std::string> said = run_weft(arguments); !said) return said.error();
   }
   return app::merge_batch(plan, {});
 }

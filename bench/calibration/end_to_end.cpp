@@ -134,9 +134,7 @@ class Walkthrough {
     if (Result<void> ok = calibrate(); !ok) return ok.error();
     Rows rows;
     for (const auto& [name, folder] : contenders_) {
-      Result<Json> row = score(name, folder);
-      if (!row) return std::move(row).error();
-      rows.push_back(std::move(*row));
+      if (Result<void> ok = add_row(rows, score(name, folder)); !ok) return ok.error();
     }
     rows.push_back({{"calibration", "asked of ours"},
                     {"chi-square", "0.9 to 1.1"},

@@ -3,7 +3,7 @@
 
 #include "bench/base/study.h"
 
-// What is measured of it: each table says in its file what its columns are.
+// Each table says where it is made what its columns are.
 
 namespace weft::bench {
 

@@ -216,9 +216,8 @@ Result<Json> row_of(const NamedScene& named, int threads) {
 Result<Rows> effects_auto(const StudyOptions& options) {
   Rows rows;
   for (const NamedScene& scene : auto_gallery(bench_size(kMegapixels))) {
-    Result<Json> row = row_of(scene, resolved_threads(options.threads));
-    if (!row) return row.error();
-    rows.push_back(std::move(*row));
+    if (Result<void> ok = add_row(rows, row_of(scene, resolved_threads(options.threads))); !ok)
+      return ok.error();
   }
   return rows;
 }

@@ -30,9 +30,6 @@ struct Example {
   double difference = 0;  ///< how many times a third panel enlarges the change; 0: no such panel
 };
 
-/// One for every effect in the order of light, and last one for all together.
-std::vector<Example> effect_examples();
-
 using namespace simulator;
 using E = EffectSettings;
 
@@ -299,6 +296,7 @@ Example everything() {
   return e;
 }
 
+// One for every effect in the order of light, and last one for all together.
 std::vector<Example> effect_examples() {
   return {near_light(),
           relief(),

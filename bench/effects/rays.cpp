@@ -13,7 +13,6 @@
 #include "bench/base/bare_embree.h"
 #include "bench/effects/scenes.h"
 #include "core/parallel.h"
-#include "core/result.h"
 #include "simulator/effects/halos.h"
 #include "simulator/geometry/surface.h"
 #include "simulator/scene/rig.h"
@@ -33,7 +32,6 @@ struct TracedPatch {
   std::vector<Vec3> normals;   ///< by vertex
   simulator::SphereLight led;  ///< 62 degrees from the zenith, 600 mm away, radius 12 mm
 };
-Result<TracedPatch> traced_patch(int side_px);
 
 using namespace simulator;
 

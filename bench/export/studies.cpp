@@ -19,8 +19,6 @@
 #include "core/color_spaces.h"
 #include "core/image.h"
 #include "core/image_io/image_io.h"
-#include "core/json_document.h"
-#include "core/result.h"
 #include "core/temporary_folder.h"
 #include "core/vec.h"
 #include "exchange/blocks/decode.h"
@@ -39,10 +37,6 @@ struct SolvedCloth {
   Image<float> albedo;  ///< R, G, B, linear
   double mean_tilt_deg = 0;
 };
-
-/// The middle of a scene's frame, `most` at most, photographed and solved by the level standard. Errors:
-/// those of read_scene(), rendering and solving.
-Result<SolvedCloth> solved_cloth(const std::filesystem::path& scene, Size most, int threads);
 
 // A cell of the mosaic stays whole.
 Rect middle_of(Size frame, Size most) {
@@ -69,6 +63,8 @@ double mean_tilt(const Image<float>& normal) {
   return sum / static_cast<double>(normal.size().pixels());
 }
 
+// The middle of a scene's frame, `most` at most, photographed and solved by the level standard. Errors:
+// those of read_scene(), rendering and solving.
 Result<SolvedCloth> solved_cloth(const std::filesystem::path& scene_file, Size most, int threads) {
   const Result<simulator::Scene> scene = simulator::read_scene(scene_file);
   if (!scene) return scene.error();
@@ -281,23 +277,14 @@ Result<Rows> export_blocks(const StudyOptions& options) {
   Rows rows;
   double bc1_seconds = 0;
   for (const BlockRow& asked : kRows) {
-    Result<Json> row = row_of_format(asked, pictures, bc1_seconds);
-    if (!row) return std::move(row).error();
-    rows.push_back(std::move(*row));
+    if (Result<void> ok = add_row(rows, row_of_format(asked, pictures, bc1_seconds)); !ok) return ok.error();
   }
-  Result<Json> row = row_of_libsquish(pictures);
-  if (!row) return std::move(row).error();
-  rows.push_back(std::move(*row));
+  if (Result<void> ok = add_row(rows, row_of_libsquish(pictures)); !ok) return ok.error();
   for (Json& each : rows) each["tilt_deg"] = pictures.cloth.mean_tilt_deg;
   return rows;
 }
 
 namespace {
-
-/// Writes a set of maps of this size into `folder`: the solved cloth beside itself over and over, with a
-/// height, an openness and a roughness that vary as its normals do. Errors of write_image().
-Result<void> write_map_set(const SolvedCloth& cloth, Size size, double mm_per_pixel,
-                           const std::filesystem::path& folder);
 
 // A plane of the large map by the pixel of the cloth that lies there.
 template <typename Value>
@@ -311,6 +298,8 @@ Image<float> repeated(Size cloth, Size size, int planes, const Value& value) {
   return map;
 }
 
+// Writes a set of maps of this size into `folder`: the solved cloth beside itself over and over, with a
+// height, an openness and a roughness that vary as its normals do. Errors of write_image().
 Result<void> write_map_set(const SolvedCloth& cloth, Size size, double mm_per_pixel,
                            const std::filesystem::path& folder) {
   const Size of = cloth.normal.size();
@@ -427,13 +416,10 @@ Result<Rows> export_presets(const StudyOptions& options) {
   std::vector<std::string> all;
   for (const exchange::ShippedPreset& preset : exchange::shipped_presets()) {
     all.emplace_back(preset.name);
-    Result<Json> row = measure_presets(options, tile, preset.name, {preset.name});
-    if (!row) return std::move(row).error();
-    rows.push_back(std::move(*row));
+    if (Result<void> ok = add_row(rows, measure_presets(options, tile, preset.name, {preset.name})); !ok)
+      return ok.error();
   }
-  Result<Json> row = measure_presets(options, tile, "all", all);
-  if (!row) return std::move(row).error();
-  rows.push_back(std::move(*row));
+  if (Result<void> ok = add_row(rows, measure_presets(options, tile, "all", all)); !ok) return ok.error();
   return rows;
 }
 

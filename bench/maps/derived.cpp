@@ -202,18 +202,16 @@ Result<Rows> maps_scans(const StudyOptions& options) {
   for (const ScannedCloth& cloth : kCloths) {
     const Result<simulator::Scene> scene = scene_of(cloth);
     if (!scene) return scene.error();
-    Result<Json> row = row_of_truth(cloth, *scene, size, options.threads);
-    if (!row) return std::move(row).error();
-    rows.push_back(std::move(*row));
+    if (Result<void> ok = add_row(rows, row_of_truth(cloth, *scene, size, options.threads)); !ok)
+      return ok.error();
     const Result<Patch> patch = render_patch(*scene, centre_of(scene->camera, size), options.threads);
     if (!patch) return patch.error();
     const Result<Image<float>> truth = flat_height(patch->normal, options.threads);
     if (!truth) return truth.error();
     for (const Contender& level : *levels) {
       if (level.is_yardstick) continue;
-      row = row_of_level(cloth, level, *patch, *truth, options.threads);
-      if (!row) return std::move(row).error();
-      rows.push_back(std::move(*row));
+      if (Result<void> ok = add_row(rows, row_of_level(cloth, level, *patch, *truth, options.threads)); !ok)
+        return ok.error();
     }
   }
   return rows;

@@ -14,34 +14,6 @@
 
 namespace weft::bench {
 
-/// A way to make a texel.
-struct MipContender {
-  std::string name;
-  material::MipRule rule;
-  material::NormalWeight weight = material::NormalWeight::kProjected;
-};
-
-/// How footprints are looked at.
-struct MipTrial {
-  double alpha = 0.1;
-  int across_px = 16, down_px = 16;  ///< beneath a texel
-  double view_deg = 0;
-  FacetLaw law = FacetLaw::kGgx;
-  double lowest_light_deg = 90;       ///< lights no farther than this from the normal
-  double highest_light_deg = 0;       ///< and no nearer
-  int footprints = 100, lights = 64;  ///< of each of two azimuths of the view
-  int texel_across_px = 0;  ///< what the texel was made of, where that is not what is seen; 0: the same
-};
-
-/// Relative rms by contender, and of the best single alpha of each footprint.
-struct MipErrors {
-  std::vector<double> by_contender;
-  double best = 0;
-  double alpha = 0;  ///< mean of the best
-};
-MipErrors mip_errors(const NormalSquare& cloth, const MipTrial& trial,
-                     std::span<const MipContender> contenders, std::uint32_t seed);
-
 /// Which distribution of facets a lobe has.
 enum class FacetLaw { kGgx, kBeckmann };
 
@@ -73,5 +45,33 @@ std::vector<Vec3> cosine_lights(int count, std::mt19937& random);
 
 /// Facet normals of isotropic GGX, by the area that they cover.
 std::vector<Vec3> ggx_facets(double alpha, int count, std::mt19937& random);
+
+/// A way to make a texel.
+struct MipContender {
+  std::string name;
+  material::MipRule rule;
+  material::NormalWeight weight = material::NormalWeight::kProjected;
+};
+
+/// How footprints are looked at.
+struct MipTrial {
+  double alpha = 0.1;
+  int across_px = 16, down_px = 16;  ///< beneath a texel
+  double view_deg = 0;
+  FacetLaw law = FacetLaw::kGgx;
+  double lowest_light_deg = 90;       ///< lights no farther than this from the normal
+  double highest_light_deg = 0;       ///< and no nearer
+  int footprints = 100, lights = 64;  ///< of each of two azimuths of the view
+  int texel_across_px = 0;  ///< what the texel was made of, where that is not what is seen; 0: the same
+};
+
+/// Relative rms by contender, and of the best single alpha of each footprint.
+struct MipErrors {
+  std::vector<double> by_contender;
+  double best = 0;
+  double alpha = 0;  ///< mean of the best
+};
+MipErrors mip_errors(const NormalSquare& cloth, const MipTrial& trial,
+                     std::span<const MipContender> contenders, std::uint32_t seed);
 
 }  // namespace weft::bench

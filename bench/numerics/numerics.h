@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "bench/base/report.h"
+#include "bench/base/study.h"
 #include "core/result.h"
 
 namespace weft::bench {

@@ -15,7 +15,6 @@
 #include "bench/accuracy/page.h"
 #include "bench/accuracy/photos.h"
 #include "bench/program/studies.h"
-#include "bench/program/verbs.h"
 
 namespace weft::bench {
 namespace {

@@ -7,7 +7,6 @@
 #include "bench/capture/fault_matrix.h"
 #include "bench/capture/studies.h"
 #include "bench/program/studies.h"
-#include "bench/program/verbs.h"
 
 namespace weft::bench {
 namespace {

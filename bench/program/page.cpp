@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bench/program/studies.h"
-#include "bench/program/verbs.h"
 #include "bench/server/wide_solve.h"
 #include "core/files.h"
 #include "core/process.h"

@@ -31,4 +31,14 @@ void exclude_each_other(const std::vector<app::Option>& options);
 /// Measures it, with progress, and prints the rows as a table or with --json as a document.
 app::Run run_of(const Choice& choice);
 
+/// The verbs of `weft bench`, in the order of its help.
+std::vector<app::Verb> verbs();
+
+// Those with a file each.
+app::Verb accuracy_verb();
+app::Verb explain_verb();
+app::Verb photos_verb();
+app::Verb capture_verb();
+app::Verb page_verb();
+
 }  // namespace weft::bench

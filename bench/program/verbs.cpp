@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/program/verbs.h"
+#include "bench/program/studies.h"
 
 #include <filesystem>
 #include <memory>
@@ -13,7 +13,6 @@
 #include "bench/export/studies.h"
 #include "bench/maps/studies.h"
 #include "bench/numerics/numerics.h"
-#include "bench/program/studies.h"
 #include "bench/server/studies.h"
 #include "bench/solve/studies.h"
 

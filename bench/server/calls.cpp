@@ -186,7 +186,7 @@ Result<Rows> server_library_table(const StudyOptions& options) {
 namespace {
 
 constexpr double kFirstAsked_ms = 500;
-constexpr std::array kMegapixels = {16, 100};
+constexpr std::array kSizes_mp = {16, 100};
 
 double quantile(std::vector<double> times, double share) {
   std::ranges::sort(times);
@@ -280,9 +280,9 @@ Result<void> measure_size(const StudyOptions& options, int megapixels, Rows& row
 Result<Rows> server_tiles_table(const StudyOptions& options) {
   Rows rows;
   int done = 0;
-  for (const int megapixels : kMegapixels) {
+  for (const int megapixels : kSizes_mp) {
     if (Result<void> ok = measure_size(options, megapixels, rows); !ok) return std::move(ok).error();
-    options.progress(++done, static_cast<int>(kMegapixels.size()));
+    options.progress(++done, static_cast<int>(kSizes_mp.size()));
   }
   return rows;
 }

@@ -29,8 +29,6 @@
 #include "bench/server/wide_solve.h"
 #include "core/descriptor.h"
 #include "core/files.h"
-#include "core/json_document.h"
-#include "core/result.h"
 #include "core/statistics.h"
 #include "core/temporary_folder.h"
 
@@ -281,9 +279,8 @@ Result<Rows> door_table(const StudyOptions& options) {
   Rows rows;
   for (const Beside& beside : {Beside{}, Beside{.malformed = true}, Beside{.silent = true},
                                Beside{.slow = true}, Beside{true, true, true}}) {
-    Result<Json> row = row_of(*client, (*server)->port(), beside, options);
-    if (!row) return std::move(row).error();
-    rows.push_back(std::move(*row));
+    if (Result<void> ok = add_row(rows, row_of(*client, (*server)->port(), beside, options)); !ok)
+      return ok.error();
   }
   return rows;
 }
@@ -401,7 +398,7 @@ Result<Rows> scans_beside(const StudyOptions& options, int viewer_count) {
 }  // namespace
 
 /// What clients cost a scan: in turn one alone, and one beside those who mean ill (malformed requests one
-/// after another, silent clients, slow readers; crowd.h) or beside viewers, each asking for one tile after
+/// after another, silent clients, slow readers) or beside viewers, each asking for one tile after
 /// another. One row: "turns", "alone_s" and "beside_s" (median), "ratio" (median of the pairs), "median_ms"
 /// and "most_ms" of GET /api/v1/rig every 50 ms beside them.
 /// Errors: of the rig's and the daemon's start, and of a scan.

@@ -10,21 +10,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "bench/base/report.h"
 #include "bench/base/rig.h"
 #include "bench/base/yardsticks.h"
 #include "core/image_io/png_library.h"
 #include "core/parallel.h"
-#include "core/result.h"
 #include "core/session.h"
 #include "core/temporary_folder.h"
 #include "core/vec.h"
@@ -43,12 +39,7 @@ enum class Cloth {
   kSatin    ///< and a highlight of the half vector, exponent 24, as strong as half the diffuse albedo
 };
 
-/// Puts cloth of albedo 0.4 before the lights of grey mosaics (bench/base/yardsticks.h), with photon and read
-/// noise: a weave of 24 pixels a period whose slopes reach 12 degrees, seen from above. Counts are a function
-/// of the pixel alone.
-void put_cloth(pipeline::Photographs& photographs, Cloth cloth, int threads);
-
-constexpr double kAlbedo = 0.4, kPeriod_px = 24, kSteepest_deg = 12, kLobe = 0.2, kExponent = 24;
+constexpr double kClothAlbedo = 0.4, kPeriod_px = 24, kSteepest_deg = 12, kLobe = 0.2, kExponent = 24;
 constexpr double kElectronsPerCount = 2.7, kReadNoise = 1.2;  // counts
 
 // A standard normal deviate that belongs to a number (splitmix64, Steele et al. 2014; Box and Muller 1958).
@@ -69,12 +60,15 @@ Vec3 weave_normal(int x, int y) {
 
 // Of the light of strength 1.
 double reflected(Cloth cloth, Vec3 n, Vec3 l) {
-  const double diffuse = kAlbedo * std::max(0.0, dot(n, l));
+  const double diffuse = kClothAlbedo * std::max(0.0, dot(n, l));
   if (cloth == Cloth::kSmooth) return diffuse;
   const Vec3 half = normalized(l + Vec3{0, 0, 1});
   return diffuse + kLobe * std::pow(std::max(0.0, dot(n, half)), kExponent);
 }
 
+// Puts cloth of albedo 0.4 before the lights of grey mosaics (bench/base/yardsticks.h), with photon and read
+// noise: a weave of 24 pixels a period whose slopes reach 12 degrees, seen from above. Counts are a function
+// of the pixel alone.
 void put_cloth(pipeline::Photographs& photographs, Cloth cloth, int threads) {
   const double seconds = 1 / 100.0;  // as grey mosaics are exposed
   for (std::size_t k = 0; k < photographs.count(); ++k) {
@@ -265,10 +259,6 @@ Result<Rows> solve_speed(const StudyOptions& options) {
 
 namespace {
 
-/// How long the library of its format takes to write the image of `file`, an EXR or PNG, to `copy` in one
-/// call, as it is stored. Error: kInputOutput.
-Result<double> write_alone_seconds(const std::filesystem::path& file, const std::filesystem::path& copy);
-
 namespace fs = std::filesystem;
 
 Result<double> exr_seconds(const fs::path& file, const fs::path& copy) try {
@@ -334,23 +324,10 @@ Result<double> png_seconds(const fs::path& file, const fs::path& copy) {
   return seconds;
 }
 
+// How long the library of its format takes to write the image of `file`, an EXR or PNG, to `copy` in one
+// call, as it is stored. Error: kInputOutput.
 Result<double> write_alone_seconds(const fs::path& file, const fs::path& copy) {
   return file.extension() == ".png" ? png_seconds(file, copy) : exr_seconds(file, copy);
-}
-
-// Standard output of a command, parsed as JSON.
-Result<Json> json_of_command(const std::string& command) {
-  std::FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return Error{ErrorKind::kTryAgain, "cannot start", command, "", ""};
-  std::string text;
-  std::array<char, 4096> block = {};
-  for (std::size_t n; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
-    text.append(block.data(), n);
-  const int status = pclose(pipe);
-  Json json = Json::parse(text, nullptr, false);
-  if (status != 0 || json.is_discarded())
-    return Error{ErrorKind::kInternal, "the solve failed", command, text, ""};
-  return json;
 }
 
 // OpenEXR and libpng alone: the maps of a solve, as they are on disk, written again in one call each.
@@ -402,17 +379,18 @@ Result<Rows> end_to_end(const StudyOptions& options) {
   fs::path maps;
   for (int i = 0; i < 3; ++i) {
     maps = scratch.path() / fmt::format("maps{}", i);
-    const Result<Json> solved = json_of_command(
-        fmt::format("'{}' solve '{}' -o '{}' --quality fast --no-previews --quiet --json --threads {}",
-                    (options.programs / "weft").string(), folder.string(), maps.string(), threads));
-    if (!solved) return solved.error();
-    const Json& s = (*solved)["seconds"];
+    const Result<std::string> said =
+        run_weft({"solve", folder.string(), "-o", maps.string(), "--quality", "fast", "--no-previews",
+                  "--quiet", "--json", "--threads", std::to_string(threads)},
+                 options.programs / "weft");
+    if (!said) return said.error();
+    const Json solved = Json::parse(*said), &s = solved["seconds"];
     const double work = s["read"].get<double>() + s["solve"].get<double>() + s["write"].get<double>();
     if (i == 0 || work < best) {
       best = work;
       seconds = s;
     }
-    peak = std::max(peak, (*solved)["peak_bytes"].get<double>());
+    peak = std::max(peak, solved["peak_bytes"].get<double>());
   }
   const Result<double> write = write_seconds(maps, scratch.path());
   if (!write) return write.error();

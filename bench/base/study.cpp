@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/base/report.h"
+#include "bench/base/study.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <fstream>
+#include <optional>
+#include <utility>
 
+#include "core/files.h"
 #include "core/parallel.h"
+#include "core/temporary_folder.h"
 
 namespace weft::bench {
 namespace {
@@ -28,6 +33,32 @@ std::string cell_of(const Json& value) {
 }
 
 }  // namespace
+
+Result<void> add_row(Rows& rows, Result<Json> row) {
+  if (!row) return std::move(row).error();
+  rows.push_back(std::move(*row));
+  return {};
+}
+
+Result<std::string> run_weft(const std::vector<std::string>& arguments,
+                             const std::filesystem::path& program) {
+  constexpr double kLongest_s = 4 * 3600;
+  const TemporaryFolder folder;
+  const std::filesystem::path errors = folder.path() / "errors";
+  std::vector<std::string> command = {program.string()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  const auto weft = ChildProcess::start(command, {}, folder.path() / "said", errors);
+  if (!weft) return weft.error();
+  const std::optional<int> code = (*weft)->wait(kLongest_s);
+  const std::string where = fmt::format("{}", fmt::join(command, " "));
+  if (!code)
+    return Error{ErrorKind::kTryAgain, "weft did not end", where, fmt::format("within {} s", kLongest_s), ""};
+  if (*code == 0) return (*weft)->said();
+  const Result<std::string> said = read_text(errors);
+  const std::string why = (said ? *said : "") + (*weft)->said();
+  return Error{ErrorKind::kInternal, fmt::format("weft ended with {}", *code), where, why.substr(0, 2000),
+               "run the same command by hand"};
+}
 
 Json document_of(const Rows& rows) {
   return {{"machine", {{"processor", processor_name()}, {"threads", hardware_threads()}}}, {"rows", rows}};
