@@ -11,6 +11,7 @@
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/reflectance.h"
 #include "app/jobs/report.h"
+#include "core/field_json.h"
 
 namespace weft::app {
 namespace {
@@ -190,7 +191,7 @@ report::Section time(const Json& report) {
 std::string report_page(const Json& report, const std::vector<report::Figure>& pictures) {
   const std::string title = report.value("title", "");
   report::Page page = {.title = title.empty() ? "Untitled cloth" : title, .meta = {meta(report)}};
-  if (Result<std::vector<Verdict>> warnings = verdicts_from_json(report["warnings"], "report"))
+  if (Result<std::vector<Verdict>> warnings = read_list<Verdict>(report["warnings"], "report"))
     page.verdicts = std::move(*warnings);
   if (page.verdicts.empty()) page.summary = all_is_well(report);
   page.sections = {{.figures = pictures}, residuals(report),
