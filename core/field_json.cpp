@@ -40,10 +40,10 @@ bool fits(const Json& list, NumberShape shape) {
          std::ranges::all_of(list, [&](const Json& row) { return is_row(row, shape.columns); });
 }
 
-std::string rule_of(NumberShape shape) {
-  if (shape.columns == 0) return fmt::format("must be {} numbers", shape.rows);
-  if (shape.rows == 0) return fmt::format("must be lists of {} numbers", shape.columns);
-  return fmt::format("must be {} lists of {} numbers", shape.rows, shape.columns);
+std::string words_of(NumberShape shape) {
+  if (shape.columns == 0) return fmt::format("{} numbers", shape.rows);
+  if (shape.rows == 0) return fmt::format("lists of {} numbers", shape.columns);
+  return fmt::format("{} lists of {} numbers", shape.rows, shape.columns);
 }
 
 }  // namespace
@@ -108,7 +108,11 @@ void JsonReader::take_numbers(const Field& field, NumberShape shape, Json& numbe
   if (!is_said(field)) return;
   const Json& said = fields_.list(field.name);
   if (!fields_.status()) return;
-  if (!fits(said, shape)) return require(false, field.name, rule_of(shape));
+  if (!fits(said, shape)) {
+    constexpr std::size_t kEnough = 60;
+    return require(false, field.name,
+                   fmt::format("is {}; {} were expected", said.dump().substr(0, kEnough), words_of(shape)));
+  }
   const Json flat = said.flatten();
   require(std::ranges::all_of(flat, [&](const Json& each) { return field.range.holds(each.get<double>()); }),
           field.name, rule_of(field.range));

@@ -153,12 +153,21 @@ report::Section light_table(const Json& report) {
                           report.value("looked_at", 0))};
 }
 
+report::Section registration(const Json& report) {
+  report::Table table = {{"", "right, px", "down, px", "turn", "sigma, px", "costs", ""}};
+  for (const Json& shot : report.value("registration", Json::array())) {
+    table.rows.push_back(
+        {fmt::format("LED {}", shot.value("led", 0)), fmt::format("{:+.3f}", number(shot, "dx_px")),
+         fmt::format("{:+.3f}", number(shot, "dy_px")), fmt::format("{:+.4f}°", number(shot, "turn_deg")),
+         fmt::format("{:.3f}", number(shot, "sigma_px")), fmt::format("{:.3f}°", number(shot, "cost_deg")),
+         shot.value("verdict", "")});
+  }
+  return {.title = "How the cloth lay in each shot", .table = std::move(table)};
+}
+
 report::Section conditions(const Json& report) {
-  Json said = Json::object();
-  if (report.contains("registration")) said["registration"] = report["registration"];
-  said.update(report.value("conditions", Json::object()));
   report::Table table;
-  report::add_rows(table, said);
+  report::add_rows(table, report.value("conditions", Json::object()));
   return {.title = "Conditions", .table = std::move(table), .is_half = true};
 }
 
@@ -199,7 +208,7 @@ std::string report_page(const Json& report, const std::vector<report::Figure>& p
                    sigma_map(report),     reflectance_section(report.value("reflectance", Json())),
                    light_table(report),   left_out_section(report, light_noun(report)),
                    gates(report),         time(report),
-                   conditions(report)};
+                   conditions(report),    registration(report)};
   return html_of(page);
 }
 

@@ -196,11 +196,12 @@ TEST(Describe, WritesAndReadsNumbersInTheirShapeCountsAndNothing) {
 TEST(Describe, RefusesNumbersThatAreNotInTheirShape) {
   const Json good = object_of(Plate());
   for (const auto& [path, value, said] :
-       {std::tuple<const char*, Json, const char*>{"/centre_mm", {1, 2}, "\"centre_mm\" must be 3 numbers"},
-        {"/centre_mm/1", "2", "\"centre_mm\" must be 3 numbers"},
+       {std::tuple<const char*, Json, const char*>{
+            "/centre_mm", {1, 2}, "\"centre_mm\" is [1,2]; 3 numbers were expected"},
+        {"/centre_mm/1", "2", "3 numbers were expected"},
         {"/centre_mm/1", 11, "\"centre_mm\" must be a number from -10 to 10"},
-        {"/curves/2", {1, 2, 3}, "\"curves\" must be 3 lists of 2 numbers"},
-        {"/corners_px", {{1, 2}, {3}}, "\"corners_px\" must be lists of 2 numbers"},
+        {"/curves/2", {1, 2, 3}, "3 lists of 2 numbers were expected"},
+        {"/corners_px", {{1, 2}, {3}}, "\"corners_px\" is [[1,2],[3]]; lists of 2 numbers were expected"},
         {"/bytes", -1, "\"bytes\" must be a whole number from 0"},
         {"/bytes", 0.5, "\"bytes\" must be a whole number from 0"},
         {"/left_s", "soon", "\"left_s\" is \"soon\"; a number was expected"},

@@ -102,10 +102,10 @@ TEST_F(BadCalibration, OneWithALedOfNoIntensityIsRefusedByItsNumber) {
               [&](Json& c) { c["parts"]["lights.json"] = *sha256_of_file(other_ / "lights.json"); });
   };
   flux_becomes(0);
-  expect_other_refused({"lights.json: LED 5", "\"flux_rgb\" must be above 0 in every channel"});
+  expect_other_refused({"lights.json: led 5", "\"flux_rgb\" must be above 0 in every channel"});
   fs::remove_all(other_);
   flux_becomes(nullptr);  // what programs write for NaN
-  expect_other_refused({"lights.json: LED 5", "\"flux_rgb\" is [", "null"});
+  expect_other_refused({"lights.json: led 5", "\"flux_rgb\" is [", "null"});
 }
 
 TEST_F(BadCalibration, OneWithoutLightsIsRefused) {

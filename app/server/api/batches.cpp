@@ -31,8 +31,7 @@ constexpr const char* kReportNumbers = "report.json";
 // Its script stands in it, and reaches nothing: the page is of no origin.
 constexpr const char* kReportPolicy =
     "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
-    "img-src "
-    "data:";
+    "img-src data:";
 
 fs::path batches_of(const RigParts& parts) {
   return parts.state / kBatchFolder;
