@@ -29,8 +29,10 @@ std::string option_of(const Field& field) {
 
 std::string rule_of(const NumberRange& range, bool is_whole) {
   const char* number = is_whole ? "must be a whole number" : "must be a number";
-  if (range.most < kMostNumber) return fmt::format("{} from {} to {}", number, range.least, range.most);
-  if (range.least == kAboveZero.least) return fmt::format("{} above 0", number);
+  const bool is_above_zero = range.least == kAboveZero.least, has_end = range.most < kMostNumber;
+  if (is_above_zero && has_end) return fmt::format("{} above 0, at most {}", number, range.most);
+  if (is_above_zero) return fmt::format("{} above 0", number);
+  if (has_end) return fmt::format("{} from {} to {}", number, range.least, range.most);
   return range.least > -kMostNumber ? fmt::format("{} of at least {}", number, range.least) : number;
 }
 

@@ -235,6 +235,12 @@ TEST(Describe, CountsFromOneWherePeopleDo) {
   EXPECT_EQ(of(Naming::kFromOne), "cloth.json: yarn 2");
 }
 
+TEST(Describe, SaysARangeThatIsOpenAtZero) {
+  EXPECT_EQ(rule_of({kAboveZero.least, 1}), "must be a number above 0, at most 1");
+  EXPECT_EQ(rule_of(kAboveZero), "must be a number above 0");
+  EXPECT_EQ(rule_of({0, 1}), "must be a number from 0 to 1");
+}
+
 TEST(Describe, NamesAnOptionWithoutItsUnit) {
   EXPECT_EQ(option_of({"tape_sigma_mm"}), "--tape-sigma");
   EXPECT_EQ(option_of({"accept_misfit"}), "--accept-misfit");

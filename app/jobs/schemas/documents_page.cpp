@@ -22,7 +22,8 @@ std::string list_words(const Json& list) {
 
 std::string range_words(const Json& schema) {
   const auto bound = [&](const char* key) { return fmt::format("{}", schema[key].get<double>()); };
-  if (schema.contains("exclusiveMinimum")) return " above 0";
+  if (schema.contains("exclusiveMinimum"))
+    return schema.contains("maximum") ? " above 0, at most " + bound("maximum") : " above 0";
   if (schema.contains("minimum") && schema.contains("maximum"))
     return fmt::format(" {} to {}", bound("minimum"), bound("maximum"));
   return schema.contains("minimum") ? " from " + bound("minimum") : "";
