@@ -52,6 +52,21 @@ test('by plain http from another name it works as well, where a browser offers n
   await visitor.leave();
 });
 
+test('a screen that is fetched later than the next one does not take its place', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor, 'doctor');
+  await page.getByRole('heading', {level: 1, name: 'Doctor'}).waitFor();
+  const late = await visitor.hold(/\/assets\/calibrate-[^/]*\.js$/);
+  const tabs = page.getByRole('navigation');
+  await tabs.getByRole('link', {name: 'Calibrate'}).click();
+  await late.asked;
+  await tabs.getByRole('link', {name: 'Library'}).click();
+  await page.getByRole('heading', {level: 1, name: 'Library'}).waitFor();
+  await late.arrive(page);
+  assert.equal(await page.getByRole('heading', {level: 1, name: 'Library'}).count(), 1);
+  await visitor.leave();
+});
+
 for (const screen of screens) {
   test(`${screen} opens by its address, passes axe and is dark`, async () => {
     const visitor = await visit(browser, rig);

@@ -223,6 +223,20 @@ function documentOf(glb) {
   return JSON.parse(glb.toString('utf8', 20, 20 + glb.readUInt32LE(12)));
 }
 
+test('who has left before a session says its maps or solves is not fetched back', async () => {
+  const visitor = await visit(browser, archive);
+  for (const [of, asks] of [['material/weave', /sessions\/weave\/maps$/], ['viewer/weave', /sessions\/weave\/solves$/]]) {
+    const late = await visitor.hold(asks);
+    const page = await visitor.open(`${archive.address}/${of}`);
+    await late.asked;
+    await page.getByRole('navigation').getByRole('link', {name: 'Library'}).click();
+    await page.getByRole('heading', {level: 1, name: 'Library'}).waitFor();
+    await late.arrive(page);
+    assert.equal(new URL(page.url()).pathname, '/sessions');
+  }
+  await visitor.leave();
+});
+
 test('a session becomes a .glb of its true size without a terminal', async () => {
   const visitor = await visit(browser, archive, {width: 1100, height: 760});
   const page = await visitor.open(archive.address);

@@ -5,6 +5,7 @@ import {connection, heardAt, onEvent} from '../api/events';
 import {place} from '../state/address';
 import {Complaint} from '../ui/complaint';
 import {Button} from '../ui/button';
+import {useLatest} from '../ui/latest';
 
 type Load = () => Promise<{default: ComponentType}>;
 
@@ -69,10 +70,10 @@ function useArrivals(): number {
 export function LazyScreen({name}: {name: string}) {
   const [shown, show] = useState<{name: string; Screen: ComponentType} | null>(null);
   const arrivals = useArrivals();
-  useEffect(() => {
+  useLatest((latest) => {
     const load = Object.hasOwn(screens, name) ? screens[name] : undefined;
     if (!load) return show({name, Screen: NoSuchScreen});
-    load().then((module) => show({name, Screen: module.default}), () => show({name, Screen: NotLoaded}));
+    latest(load()).then((module) => show({name, Screen: module.default}), () => show({name, Screen: NotLoaded}));
   }, [name]);
   return shown?.name === name ? <shown.Screen key={arrivals} /> : null;
 }

@@ -50,6 +50,25 @@ export class Visitor {
     this.#mayFail.push(...patterns);
   }
 
+  /** What is asked by this pattern waits until it may arrive. */
+  async hold(pattern) {
+    let told, letGo;
+    const asked = new Promise((resolve) => { told = resolve; });
+    const gone = new Promise((resolve) => { letGo = resolve; });
+    await this.context.route(pattern, async (route) => {
+      told();
+      await gone;
+      await route.continue();
+    });
+    const arrive = async (page) => {
+      const answered = page.waitForResponse(pattern);
+      letGo();
+      await (await answered).finished();
+      await page.waitForTimeout(100);  // what the page makes of it
+    };
+    return {asked, arrive};
+  }
+
   async open(address) {
     const page = await this.context.newPage();
     await page.goto(address);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {useEffect, useState} from 'preact/hooks';
+import {useState} from 'preact/hooks';
 import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
 import {go} from '../../state/address';
 import {useAction} from '../../ui/action';
@@ -7,6 +7,7 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Dialog} from '../../ui/dialog';
 import {Empty} from '../../ui/empty';
+import {useLatest} from '../../ui/latest';
 import {counted} from '../../ui/say';
 import {durationOf} from '../../ui/words';
 import {JobRow} from '../jobs/job_row';
@@ -27,14 +28,16 @@ export function BatchPage({name}: {name: string}) {
   const [logged, showLog] = useState<Job | null>(null);
   const [job] = jobs.value.filter(({kind, of}) => kind.startsWith('batch_') && of === name);
   const params = {path: {name}};
-  useEffect(() => {
+  useLatest((latest) => {
     const look = async () => {
       const said = await answer(api.GET('/api/v1/batches/{name}', {params}));
-      setOne(said);
-      setReport(said.done?.solved || said.done?.failed ? await answer(api.GET('/api/v1/batches/{name}/report', {params})) : null);
-      complain(null);
+      return {said, report: said.done?.solved || said.done?.failed ? await answer(api.GET('/api/v1/batches/{name}/report', {params})) : null};
     };
-    look().catch((error: unknown) => complain(asApiError(error)));
+    latest(look()).then((seen) => {
+      setOne(seen.said);
+      setReport(seen.report);
+      complain(null);
+    }, (error: unknown) => complain(asApiError(error)));
   }, [name, job?.id, job?.state]);
   const run = (retry_failed: boolean) => queueJob({kind: 'batch_run', batch: name, ...(retry_failed && {retry_failed})});
   const begin = useAction(() => run(false));

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What came of the last scan: its photographs, each with its verdict, and the cloth under another light.
-import {useEffect, useState} from 'preact/hooks';
+import {useState} from 'preact/hooks';
 import {rig} from '../../state/rig';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
+import {useLatest} from '../../ui/latest';
 import {Mark} from '../../ui/mark';
 import {digits} from '../../ui/say';
 import {percentOf} from '../../ui/words';
@@ -64,11 +65,11 @@ function FrameCard({session, frame}: {session: Session; frame: Frame}) {
 /** The relit quick solve, as soon as it is there. */
 function Preview({session}: {session: string}) {
   const [picture, show] = useState<{solve: string; source: string} | null>(null);
-  useEffect(() => {
+  useLatest((latest) => {
     show(null);
     return followSolve(session, (solve) => {
       if (solve === null) return;
-      relitPicture(session, solve).then((source) => show({solve, source}), () => show(null));
+      latest(relitPicture(session, solve)).then((source) => show({solve, source}), () => show(null));
     });
   }, [session]);
   if (!picture) return <div class="preview waits">The quick solve is on its way</div>;

@@ -12,6 +12,7 @@ import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
 import {hasEnded} from '../jobs/queue';
 import {jobs, queueJob, useJobs} from '../jobs/state';
+import {useLatest} from '../../ui/latest';
 import {JobLine} from './job_line';
 import {placeOfMaterial} from './sight';
 
@@ -47,9 +48,9 @@ export function Choose() {
 export function CurrentMaps({session}: {session: string}) {
   const [hasNone, setHasNone] = useState(false);
   const [complaint, setComplaint] = useState<ApiError | null>(null);
-  useEffect(() => {
+  useLatest((latest) => {
     const ask = () => {
-      answer(api.GET('/api/v1/sessions/{name}/maps', {params: {path: {name: session}}})).then(({current}) => {
+      latest(answer(api.GET('/api/v1/sessions/{name}/maps', {params: {path: {name: session}}}))).then(({current}) => {
         if (current === null) return setHasNone(true);
         history.replaceState(null, '', placeOfMaterial({of: session, is: 'maps', id: current}) + location.search);
         place.value = placeOf(new URL(location.href));
@@ -71,8 +72,8 @@ export function CurrentMaps({session}: {session: string}) {
 export function MakeMaps({session, onMade}: {session: string; onMade?: () => void}) {
   useJobs();
   const [of, setOf] = useState<Schemas['Session'] | null>(null);
-  useEffect(() => {
-    const ask = () => void answer(api.GET('/api/v1/sessions/{name}', {params: {path: {name: session}}})).then(setOf, () => {});
+  useLatest((latest) => {
+    const ask = () => void latest(answer(api.GET('/api/v1/sessions/{name}', {params: {path: {name: session}}}))).then(setOf, () => {});
     ask();
     return onEvent('job', (job) => job.of === session && job.kind === 'solve' && job.state === 'done' && ask());
   }, [session]);

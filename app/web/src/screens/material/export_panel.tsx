@@ -8,6 +8,7 @@ import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
+import {useLatest} from '../../ui/latest';
 import {Mark} from '../../ui/mark';
 import type {Wish} from '../../ui/schema';
 import {More} from '../../ui/schema_form';
@@ -109,8 +110,9 @@ function Files({files, address}: {files: readonly ExportFile[]; address?: (file:
 
 function Exported({name}: {name: MaterialName}) {
   const [made, setMade] = useState<Schemas['Exported'][]>([]);
-  useEffect(() => {
-    const ask = () => void fetched(addressOfExports(name)).then(async (response) => setMade(((await response.json()) as Schemas['Exports']).exports), () => {});
+  useLatest((latest) => {
+    const list = async () => ((await (await fetched(addressOfExports(name))).json()) as Schemas['Exports']).exports;
+    const ask = () => void latest(list()).then(setMade, () => {});
     ask();
     return onEvent('job', (job) => job.kind === 'export' && job.state === 'done' && ask());
   }, [name]);

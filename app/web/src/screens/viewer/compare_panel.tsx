@@ -5,6 +5,7 @@ import {answer, api, type Schemas} from '../../api/client';
 import {clothOf} from '../../state/cloths';
 import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
+import {useLatest} from '../../ui/latest';
 import {degrees} from '../../ui/say';
 import {percentOf} from '../../ui/words';
 import {DIFFERENCES} from './layers';
@@ -30,9 +31,9 @@ export function optionsOf(session: string, solves: Solves): {value: string; says
 
 export function useSolves(session: string): Solves | null {
   const [solves, setSolves] = useState<Solves | null>(null);
-  useEffect(() => {
+  useLatest((latest) => {
     setSolves(null);
-    solvesOf(session).then(setSolves, () => setSolves({solves: [], truth: false}));
+    latest(solvesOf(session)).then(setSolves, () => setSolves({solves: [], truth: false}));
   }, [session]);
   return solves;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import {useLatest} from '../../ui/latest';
 import './viewer.css';
 import {useEffect, useMemo, useState} from 'preact/hooks';
 import {answer, api, ApiError, asApiError} from '../../api/client';
@@ -41,8 +42,8 @@ function noSolveOf(session: string): ApiError {
 /** An address without a solve becomes that of the session's current one. */
 function CurrentSolve({session}: {session: string}) {
   const [complaint, setComplaint] = useState<ApiError | null>(null);
-  useEffect(() => {
-    answer(api.GET('/api/v1/sessions/{name}/solves', {params: {path: {name: session}}})).then(({solves, truth}) => {
+  useLatest((latest) => {
+    latest(answer(api.GET('/api/v1/sessions/{name}/solves', {params: {path: {name: session}}}))).then(({solves, truth}) => {
       const solve = solves.find(({is_current}) => is_current)?.id ?? (truth ? 'truth' : null);
       if (solve === null) return setComplaint(noSolveOf(session));
       history.replaceState(null, '', addressOfViewer({session, solve}) + location.search);
@@ -65,8 +66,9 @@ function Viewing({name}: {name: SolveName}) {
   const [picture, setPicture] = useState<PictureCanvas | null>(null);
   useEffect(() => () => viewer.close(), [viewer]);
   const turn = (step: 1 | -1) => {
+    const from = place.peek();
     neighbour(name.session, step).then(
-      (next) => next && go(addressOfViewer(next)),
+      (next) => next && place.peek() === from && go(addressOfViewer(next)),
       (error: unknown) => (viewer.complaint.value = asApiError(error)),
     );
   };

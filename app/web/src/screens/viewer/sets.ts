@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sets of maps that were made of a session's solves.
-import {useEffect, useState} from 'preact/hooks';
+import {useState} from 'preact/hooks';
 import {answer, api, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
+import {useLatest} from '../../ui/latest';
 import {textOf} from './sight';
 
 export type MapSet = Schemas['MapSetSummary'];
@@ -14,8 +15,8 @@ async function setsOf(session: string): Promise<readonly MapSet[]> {
 /** The newest first, previews among them; asked again when maps of the session were made. */
 export function useSets(session: string): readonly MapSet[] {
   const [sets, setSets] = useState<readonly MapSet[]>([]);
-  useEffect(() => {
-    const ask = () => setsOf(session).then(setSets, () => setSets([]));
+  useLatest((latest) => {
+    const ask = () => latest(setsOf(session)).then(setSets, () => setSets([]));
     void ask();
     return onEvent('job', (job) => {
       if (job.of === session && job.state === 'done') void ask();

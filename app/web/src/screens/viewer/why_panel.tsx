@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-import {useEffect, useState} from 'preact/hooks';
+import {useState} from 'preact/hooks';
 import {answer, api, type ApiError, asApiError} from '../../api/client';
 import {Complaint} from '../../ui/complaint';
+import {useLatest} from '../../ui/latest';
 import {digits} from '../../ui/say';
 import type {SolveName} from './sight';
 import {type Gate, type LeftOutCheck, partsOf, type Report, type Stage, stagesOf} from './why';
@@ -10,10 +11,10 @@ import type {Viewer} from './viewer';
 function useReport({session, solve}: SolveName): {report: Report | null; complaint: ApiError | null} {
   const [report, setReport] = useState<Report | null>(null);
   const [complaint, setComplaint] = useState<ApiError | null>(null);
-  useEffect(() => {
+  useLatest((latest) => {
     if (solve === 'truth') return;
     const path = {name: session, solve};
-    answer(api.GET('/api/v1/sessions/{name}/solves/{solve}/report', {params: {path}})).then(
+    latest(answer(api.GET('/api/v1/sessions/{name}/solves/{solve}/report', {params: {path}}))).then(
       setReport,
       (error: unknown) => setComplaint(asApiError(error)),
     );

@@ -1,1 +1,0 @@
-import{E as e}from"./index-xpFiO9b3.js";import{c as n}from"./plan-Bp60dWxi.js";function r(o,s){sessionStorage.setItem(n,JSON.stringify({sessions:o,calibration:s})),e("/batches?plan=chosen")}export{r as p};
