@@ -256,6 +256,7 @@ Json property_of(const Field& field, const Fields::Value& value) {
           if (field.need == kMaySay) schema["default"] = *each;
         } else if constexpr (std::is_same_v<T, std::string>) {
           if (!each->empty()) schema["default"] = *each;
+          if (field.most > 0) schema["maxLength"] = field.most;
         }
         return schema;
       },

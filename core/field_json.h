@@ -134,6 +134,17 @@ Json object_of(Described described) {
   return object;
 }
 
+/// The fields that differ from their defaults.
+template <typename Described>
+Json changes_of(Described described) {
+  Json changes = Json::object();
+  const Json defaults = object_of(Described()), all = object_of(std::move(described));
+  for (const auto& [key, value] : all.items()) {
+    if (!defaults.contains(key) || defaults[key] != value) changes[key] = value;
+  }
+  return changes;
+}
+
 /// A list of such, read from one. kBadData.
 template <typename Described>
 Result<std::vector<Described>> read_list(const Json& list, const std::string& where) {

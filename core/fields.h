@@ -88,9 +88,10 @@ struct Field {
   /// On the command line; null: option_of(name); "": a word without a dash; "!--no-repeat": turns a flag off.
   const char* option = nullptr;
   std::vector<std::string> words = {};  ///< that a text, or each in a list, may be; none: any
-  int fewest = 0, most = 0;             ///< of a list; 0 and 0: any number
+  int fewest = 0, most = 0;             ///< of a list, or bytes of a text; 0 and 0: any number
   Said said = Said::kEverywhere;
   bool is_sentence = false;            ///< a text for people, of any words
+  bool has_lines = false;              ///< a text of several lines
   bool is_said_again = false;          ///< on a command line each of a list has its own option
   std::vector<NumberUnit> units = {};  ///< of which one stands behind the number on a command line
 };

@@ -42,14 +42,25 @@ void list_as(const Field& field, bool is_of_numbers, const Option& option) {
   if (is_of_numbers || !field.is_said_again) option.by_commas();
 }
 
+// "1/60" is a share of what stands behind it.
+std::optional<double> read_share(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  const std::optional<double> number = as_number(text.substr(0, slash));
+  if (slash == text.npos || !number) return number;
+  const std::optional<double> below = as_number(text.substr(slash + 1));
+  return below ? std::optional(*number / *below) : std::nullopt;
+}
+
 // "8h" in seconds; why it is none.
 std::string read_amount(const Field& field, const std::string& text, double& amount) {
   std::string names;
   for (const NumberUnit& unit : field.units) {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", *unit.name == '\0' ? "nothing" : unit.name);
     if (!text.ends_with(unit.name)) continue;
-    const std::optional<double> number =
-        as_number(std::string_view(text).substr(0, text.size() - std::string_view(unit.name).size()));
+    std::string_view said =
+        std::string_view(text).substr(0, text.size() - std::string_view(unit.name).size());
+    said = said.substr(0, said.find_last_not_of(' ') + 1);
+    const std::optional<double> number = read_share(said);
     if (!number) continue;
     amount = *number * unit.size;
     if (field.range.holds(amount)) return "";
@@ -61,16 +72,18 @@ std::string read_amount(const Field& field, const std::string& text, double& amo
 }  // namespace
 
 void OptionFields::exclude(const char* field, const char* other) {
-  options_by_field_.at(field).excludes(options_by_field_.at(other));
+  if (has(field) && has(other)) options_by_field_.at(field).excludes(options_by_field_.at(other));
 }
 
 void OptionFields::need(const char* field, const char* other) {
-  options_by_field_.at(field).needs(options_by_field_.at(other));
+  if (has(field) && has(other)) options_by_field_.at(field).needs(options_by_field_.at(other));
 }
 
 void OptionFields::need_one(const std::vector<const char*>& fields) {
   std::vector<Option> options;
-  for (const char* field : fields) options.push_back(options_by_field_.at(field));
+  for (const char* field : fields) {
+    if (has(field)) options.push_back(options_by_field_.at(field));
+  }
   options_.need_one(options);
 }
 
@@ -87,6 +100,17 @@ Option OptionFields::add_amount(const Field& field, std::optional<double>& amoun
 }
 
 Option OptionFields::add_document(const Field& field, Json& document) {
+  if (field.is_said_again) {
+    return options_.add_texts(
+        names_of(field),
+        [&document](const std::string& text) {
+          const std::size_t equals = text.find('=');
+          if (equals == 0 || equals == text.npos) return fmt::format("must be KEY=VALUE, and is {}", text);
+          document[text.substr(0, equals)] = text.substr(equals + 1);
+          return std::string();
+        },
+        field.says);
+  }
   return options_.add_text(
       names_of(field),
       [&document](const std::string& text) {
@@ -99,6 +123,7 @@ Option OptionFields::add_document(const Field& field, Json& document) {
 }
 
 void OptionFields::take(const Field& field, Value value) {
+  if (field.said == Said::kToServer) return;
   const Option added = std::visit(
       [&]<typename T>(T* each) {
         if constexpr (std::is_same_v<T, bool>) {
@@ -111,7 +136,7 @@ void OptionFields::take(const Field& field, Value value) {
           const Option option = options_.add(names_of(field), each, field.says);
           if (field.need == kMustSay) option.required();
           if constexpr (kIsList<T>) list_as(field, std::is_arithmetic_v<typename Inner<T>::Type>, option);
-          if (field.most > 0) option.takes(field.fewest, field.most);
+          if (kIsList<T> && field.most > 0) option.takes(field.fewest, field.most);
           if (!field.words.empty() && field.path != PathTo::kNamed) option.one_of(field.words);
           keep_to<typename Inner<T>::Type>(field.range, option);
           if constexpr (std::is_arithmetic_v<T>) {

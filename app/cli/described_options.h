@@ -21,6 +21,8 @@ class OptionFields final : public Fields {
   void need_one(const std::vector<const char*>& fields) override;
 
  private:
+  /// Not what a server alone is told.
+  bool has(const char* field) const { return options_by_field_.contains(field); }
   Option add_amount(const Field& field, std::optional<double>& amount);
   Option add_document(const Field& field, Json& document);
   void take(const Field& field, Value value) override;

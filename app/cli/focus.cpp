@@ -14,6 +14,7 @@
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/server/api/requests.h"
 #include "core/error_json.h"
 #include "core/exposure_words.h"
 
@@ -28,7 +29,7 @@ constexpr int kPast = 3;            // so many photographs after the sharpest on
 struct FocusArguments {
   std::filesystem::path rig;
   int led = 1;
-  std::optional<std::string> exposure;
+  std::optional<double> exposure_us;
   int shots = 0;
 };
 
@@ -76,14 +77,12 @@ void print_map(const Json& focus) {
 }
 
 Result<int> focus(const FocusArguments& arguments, const CommonArguments& common) {
-  const Result<double> asked_us = exposure_in_us(arguments.exposure, kLongestTestShot_us);
-  if (!asked_us) return asked_us.error();
   const Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
   if (!rig) return rig.error();
   const auto devices = OpenedDevices::open(*rig);
   if (!devices) return devices.error();
   const std::stop_token stop = stop_on_signal();
-  const double exposure_us = *asked_us > 0 ? *asked_us : rig->scan.exposure_us.value_or(kTestShot_us);
+  const double exposure_us = arguments.exposure_us.value_or(rig->scan.exposure_us.value_or(kTestShot_us));
   if (!common.json && !common.quiet)
     note("turn the focus ring a little after each photograph; Ctrl-C when the sharpest is found");
   Json last;
@@ -117,7 +116,8 @@ Run add_focus(Options& options) {
   options.add("--led", &a->led, "The LED that is lit; 0: none, by the room's light")
       .in_range(0, 10)
       .shows_default();
-  add_exposure(options, a->exposure, "the rig file's, else " + exposure_words(kTestShot_us));
+  add_exposure(options, a->exposure_us, kLongestShot_us,
+               "the rig file's, else " + exposure_words(kTestShot_us));
   options.add("--shots", &a->shots, "Photographs until it ends; 0: until Ctrl-C")
       .in_range(0, 100000)
       .shows_default();

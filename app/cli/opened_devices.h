@@ -13,7 +13,7 @@
 namespace weft::app {
 
 /// Of a test shot: where nobody says another one, and the longest.
-inline constexpr double kTestShot_us = 50'000, kLongestTestShot_us = 30e6;
+inline constexpr double kTestShot_us = 50'000;
 
 /// False where somebody wants an end before.
 bool wait_for(double seconds, const std::stop_token& stop);

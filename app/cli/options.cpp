@@ -151,6 +151,19 @@ Option Options::add_text(const std::string& names, const std::function<std::stri
                     ->check([read](const std::string& text) { return read(text); }));
 }
 
+Option Options::add_texts(const std::string& names,
+                          const std::function<std::string(const std::string&)>& read,
+                          const std::string& help) {
+  return Option(verb_
+                    .add_option_function<std::vector<std::string>>(
+                        names,
+                        [read](const std::vector<std::string>& texts) {
+                          for (const std::string& text : texts) read(text);
+                        },
+                        help)
+                    ->check([read](const std::string& text) { return read(text); }));
+}
+
 void Options::need_one(const std::vector<Option>& options) {
   verb_.parse_complete_callback([options] {
     if (std::ranges::any_of(options, &Option::is_given)) return;

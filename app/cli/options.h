@@ -78,6 +78,9 @@ class Options {
   /// A text that `read` takes, or says why it does not.
   Option add_text(const std::string& names, const std::function<std::string(const std::string&)>& read,
                   const std::string& help);
+  /// Some of them, each as that.
+  Option add_texts(const std::string& names, const std::function<std::string(const std::string&)>& read,
+                   const std::string& help);
   /// Once all are read: of these one must have been given.
   void need_one(const std::vector<Option>& options);
   /// Turns `value` on; "!--no-previews" turns it off.

@@ -20,6 +20,7 @@
 #include "app/cli/rig_plan.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/server/api/requests.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/rig/rig_lock.h"
 #include "capture/rig_devices/rig_devices.h"
@@ -42,7 +43,7 @@ struct RigArguments {
   std::vector<int> leds;  ///< of `lights` and `test`; empty: all
   double seconds = 1;     ///< of `lights`, each LED
   int led = 1;            ///< of `shot`; 0: none
-  std::optional<std::string> exposure;
+  std::optional<double> exposure_us;
   fs::path output;  ///< of `shot`: a PNG; empty: none
 };
 
@@ -106,12 +107,10 @@ Result<int> light_in_turn(const capture::Rig& rig, const RigArguments& arguments
 /// One photograph that nobody keeps, but as a picture where one is asked for.
 Result<int> take_test_shot(const capture::Rig& rig, const RigArguments& arguments,
                            const CommonArguments& common) {
-  const Result<double> asked_us = exposure_in_us(arguments.exposure, kLongestTestShot_us);
-  if (!asked_us) return asked_us.error();
   const auto devices = OpenedDevices::open(rig);
   if (!devices) return devices.error();
   const Result<Json> shot =
-      (*devices)->shoot(arguments.led, *asked_us > 0 ? *asked_us : kTestShot_us, stop_on_signal());
+      (*devices)->shoot(arguments.led, arguments.exposure_us.value_or(kTestShot_us), stop_on_signal());
   if (!shot) return shot.error();
   if (!arguments.output.empty()) {
     const Result<std::string> picture = (*devices)->client().bytes(
@@ -225,7 +224,7 @@ Run add_rig_shot(Options& options) {
   const auto a = std::make_shared<RigArguments>();
   add_rig_file(options, a->rig);
   options.add("--led", &a->led, "The LED that is lit; 0: none").in_range(0, 10).shows_default();
-  add_exposure(options, a->exposure, exposure_words(kTestShot_us));
+  add_exposure(options, a->exposure_us, kLongestShot_us, exposure_words(kTestShot_us));
   options.add("-o,--output", &a->output, "Picture to write (PNG, at most 320 pixels)");
   return run_shared(take_test_shot, a);
 }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "app/cli/options.h"
-#include "core/result.h"
 
 // What the verbs of a rig have alike.
 
@@ -18,11 +17,9 @@ void add_rig_file(Options& options, std::filesystem::path& rig);
 /// --leds
 void add_leds(Options& options, std::vector<int>& leds);
 
-/// --exposure, as exposure_in_us() reads it.
-void add_exposure(Options& options, std::optional<std::string>& exposure, const std::string& otherwise);
-/// "20ms", "0.5s", "1/60" (of a second), "20000" (us); 0 where there is none. kUsage for what is no exposure
-/// or outside 1 us to this.
-Result<double> exposure_in_us(const std::optional<std::string>& text, double most_us);
+/// --exposure, from 1 us.
+void add_exposure(Options& options, std::optional<double>& exposure_us, double most_us,
+                  const std::string& otherwise);
 
 /// The rig file that a person named: `said`, else $WEFT_RIG; empty: none.
 std::filesystem::path named_rig(const std::filesystem::path& said);

@@ -10,16 +10,19 @@
 #include <thread>
 #include <utility>
 
+#include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/rig_owner.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/solve.h"
+#include "app/server/api/scan_body.h"
 #include "app/server/http/error_json.h"
 #include "app/server/rig/rig_lock.h"
 #include "capture/rig.h"
 #include "core/calibration.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/percent.h"
 #include "core/session.h"
@@ -30,23 +33,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr auto kBetweenQuestions = std::chrono::milliseconds(500);
-constexpr double kLongestExposure_us = 1e9;
 
 struct ScanArguments {
   fs::path rig;
-  fs::path output;  ///< session; empty: named by the rig file's template
-  std::string fabric;
-  std::vector<int> leds;  ///< empty: all
-  std::optional<std::string> exposure;
-  std::optional<double> bracket, cloth_height_mm, tilt_deg, downhill_deg;
-  std::vector<std::string> metadata;   ///< "key=value"
-  std::string accept_moved;            ///< why; empty: not
-  std::optional<int> again;            ///< LED of a finished session; 0: the dark shot
-  std::vector<std::string> polariser;  ///< states; empty: the rig file's
-  bool below = true;
-  bool repeat = true;
-  bool preview = true;  ///< a quick solve at the end
-  bool dry_run = false;
+  ScanWish wish;             ///< its session is a folder
+  std::optional<int> again;  ///< LED of a finished session; 0: the dark shot
+  bool preview = true;       ///< a quick solve at the end
 };
 
 /// A daemon keeps its sessions in one folder.
@@ -60,34 +52,11 @@ Result<void> check_folder(const capture::Rig& rig, const fs::path& output) {
                "they are in " + rig.scan.sessions.string(), "give a name in that folder, or stop weft serve"};
 }
 
-Result<Json> body_of(const ScanArguments& arguments) {
-  Json body = Json::object();
-  if (!arguments.output.empty()) {
-    const fs::path name = arguments.output.filename();
-    body["session"] = name.extension() == ".weft" ? name.stem().string() : name.string();
-  }
-  if (!arguments.fabric.empty()) body["fabric"] = arguments.fabric;
-  if (!arguments.leds.empty()) body["leds"] = arguments.leds;
-  const Result<double> exposure_us = exposure_in_us(arguments.exposure, kLongestExposure_us);
-  if (!exposure_us) return exposure_us.error();
-  if (*exposure_us > 0) body["exposure_us"] = *exposure_us;
-  if (arguments.bracket) body["bracket"] = *arguments.bracket;
-  if (arguments.cloth_height_mm) body["cloth_height_mm"] = *arguments.cloth_height_mm;
-  if (arguments.tilt_deg) body["tilt_deg"] = *arguments.tilt_deg;
-  if (arguments.downhill_deg) body["downhill_deg"] = *arguments.downhill_deg;
-  if (!arguments.repeat) body["repeat"] = false;
-  if (!arguments.polariser.empty()) body["polariser"] = arguments.polariser;
-  if (!arguments.below) body["below"] = false;
-  if (!arguments.accept_moved.empty()) body["accept_moved"] = arguments.accept_moved;
-  for (const std::string& pair : arguments.metadata) {
-    const std::size_t equals = pair.find('=');
-    if (equals == 0 || equals == std::string::npos) {
-      return Error{ErrorKind::kUsage, "metadata cannot be read", pair, "it must be KEY=VALUE",
-                   "write --metadata weight=\"180 g/m2\""};
-    }
-    body["metadata"][pair.substr(0, equals)] = pair.substr(equals + 1);
-  }
-  return body;
+/// What was said, as a call says it.
+Json body_of(ScanWish wish) {
+  const fs::path name = wish.session.filename();
+  wish.session = name.extension() == ".weft" ? name.stem() : name;
+  return changes_of(wish);
 }
 
 /// What happens, for the person who waits.
@@ -174,11 +143,10 @@ void say_choice(const Json& choice, const capture::Rig& rig) {
                    (rig.scan.sessions / (other + ".weft")).string()));
 }
 
-Result<int> name_only(const capture::Rig& rig, const std::optional<std::string>& owner, Json body,
+Result<int> name_only(const capture::Rig& rig, const std::optional<std::string>& owner, const Json& body,
                       const CommonArguments& common) {
   const Result<ReachedRig> scanner = reach_rig(rig, owner);
   if (!scanner) return scanner.error();
-  body["dry_run"] = true;
   Result<Json> choice = scanner->client.post("/api/v1/scan", body);
   if (!choice) return std::move(choice).error();
   if (!body.contains("session")) say_choice(*choice, rig);
@@ -280,28 +248,27 @@ void print_outcome(const fs::path& session, const Json& status, const Json& warn
 }
 
 Result<int> scan(ScanArguments arguments, const CommonArguments& common) {
-  // "NAME.weft/", as a shell completes it.
-  if (!arguments.output.has_filename()) arguments.output = arguments.output.parent_path();
+  fs::path& output = arguments.wish.session;
+  if (!output.has_filename()) output = output.parent_path();  // "NAME.weft/", as a shell completes it
   Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
   if (!rig) return std::move(rig).error();
-  Result<Json> body = body_of(arguments);
-  if (!body) return std::move(body).error();
+  Json body = body_of(arguments.wish);
   std::string call = "/api/v1/scan";
   if (arguments.again) {
-    Result<std::string> again = call_again(arguments.output, *arguments.again);
+    Result<std::string> again = call_again(output, *arguments.again);
     if (!again) return std::move(again).error();
     call = std::move(*again);
-    body = Json{{"exposure_us", body->value("exposure_us", 0.0)}};
+    body = Json{{"exposure_us", arguments.wish.exposure_us.value_or(0)}};
   }
   const Result<std::optional<std::string>> owner = address_of_owner(*rig);
   if (!owner) return owner.error();
   if (*owner) {
-    if (Result<void> ok = check_folder(*rig, arguments.output); !ok) return std::move(ok).error();
-  } else if (!arguments.output.empty()) {
-    rig->scan.sessions = fs::absolute(arguments.output).parent_path();
+    if (Result<void> ok = check_folder(*rig, output); !ok) return std::move(ok).error();
+  } else if (!output.empty()) {
+    rig->scan.sessions = fs::absolute(output).parent_path();
   }
-  if (arguments.dry_run) return name_only(*rig, *owner, *body, common);
-  Result<Json> ended = photograph(*rig, *owner, *body, call, common);
+  if (arguments.wish.dry_run) return name_only(*rig, *owner, body, common);
+  Result<Json> ended = photograph(*rig, *owner, body, call, common);
   if (!ended) return std::move(ended).error();
   Json& status = *ended;
   if (!status["error"].is_null())
@@ -324,52 +291,13 @@ Result<int> scan(ScanArguments arguments, const CommonArguments& common) {
 Run add_scan(Options& options) {
   const auto a = std::make_shared<ScanArguments>();
   add_rig_file(options, a->rig);
-  options.add("-o,--output", &a->output,
-              "Session folder, NAME.weft, new or unfinished; default the one that the same command left "
-              "unfinished in the last hour, else a new one by the rig file's session_name");
-  options.add("--fabric", &a->fabric, "Name of the cloth");
-  add_leds(options, a->leds);
-  add_exposure(options, a->exposure, "metered for this cloth");
-  options
-      .add("--bracket", &a->bracket,
-           "Each LED once more at so many times the exposure, 0.001 to 100: for cloth that one "
-           "exposure cannot hold")
-      .in_range(0.001, 100.0);
-  options
-      .add("--height", &a->cloth_height_mm,
-           "Of the cloth's surface above the table, mm; default the rig file's")
-      .in_range(-1000.0, 1000.0);
-  const Option tilt = options
-                          .add("--tilt", &a->tilt_deg,
-                               "The cloth lies on a wedge that tilts it by so many degrees: a second pose, "
-                               "whose lobe weft solve "
-                               "--second-pose seeks together with the first one's; default 0")
-                          .in_range(0.0, kMostTilt_deg);
-  options
-      .add("--downhill", &a->downhill_deg,
-           "With --tilt: azimuth to which it falls, degrees from x towards y; default 0")
-      .in_range(-360.0, 360.0)
-      .needs(tilt);
+  add_options(options, a->wish);
   options
       .add("--again", &a->again,
            "LED whose shot of the finished session -o is taken once more, 0: the dark shot. The new frame "
            "stands for the old one, which stays; with --exposure it is a bracket")
       .in_range(0, 10);
-  options.add("--metadata", &a->metadata, "KEY=VALUE to keep with the session: id, weight, side, notes");
-  options.add("--accept-moved", &a->accept_moved,
-              "Scan although the last check of the calibration did not pass: the reason, which is kept");
-  options
-      .add(
-          "--polariser", &a->polariser,
-          "How the films stand for each LED, crossed, parallel or crossed,parallel: one after the other, and "
-          "the first is solved; default [polariser] of the rig file")
-      .by_commas();
-  options.add_flag("!--no-below", &a->below,
-                   "Do not light the cloth from below, though the rig file has [below]");
-  options.add_flag("!--no-repeat", &a->repeat,
-                   "Do not light the first LED once more at the end, to see drift");
   options.add_flag("!--no-preview", &a->preview, "Do not solve a quick preview at the end");
-  options.add_flag("--dry-run", &a->dry_run, "Only say which session would be made or gone on with");
   return [a](const CommonArguments& common) { return scan(*a, common); };
 }
 

@@ -39,6 +39,19 @@ inline void describe_output(Fields& fields, std::filesystem::path& output, const
                output);
 }
 
+/// A shutter time, in microseconds. `otherwise`: what it is where nothing is said.
+inline void describe_exposure(Fields& fields, std::optional<double>& exposure_us, const NumberRange& range_us,
+                              const std::string& otherwise) {
+  fields.value(
+      {.name = "exposure_us",
+       .says = "Shutter time: 20ms, 0.5s, 1/60 or, without a unit, us; the camera's nearest is taken; "
+               "default " +
+               otherwise,
+       .range = range_us,
+       .units = {{"us", 1}, {"ms", 1e3}, {"s", 1e6}, {"", 1}}},
+      exposure_us);
+}
+
 inline void describe_grid(Fields& fields, std::optional<double>& mm_per_pixel) {
   fields.value({.name = "mm_per_pixel",
                 .says = "Of the grid; default what the camera sees",

@@ -7,6 +7,7 @@
 #include "app/server/api/descriptions.h"
 #include "app/server/api/job_kinds.h"
 #include "app/server/api/reply_schemas.h"
+#include "app/server/api/requests.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/short_schema.h"
 #include "core/files.h"
@@ -112,6 +113,7 @@ Json api_description() {
   }
   for (Json& schema : schemas) schema = written_out(schema);
   schemas.update(in_openapi(reply_schemas()));
+  schemas.update(in_openapi(request_schemas()));
   schemas.update(in_openapi(job_schemas()));
   for (auto& [name, response] : whole["components"]["responses"].items()) write_out_response(response);
   for (auto& [path, item] : paths.items()) {

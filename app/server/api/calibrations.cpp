@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,6 +9,7 @@
 #include "app/jobs/sets/response_series.h"
 #include "app/server/api/api.h"
 #include "app/server/api/job_places.h"
+#include "app/server/api/requests.h"
 #include "app/server/api/scan_body.h"
 #include "core/files.h"
 #include "core/toml/field_toml.h"
@@ -19,10 +17,7 @@
 namespace weft::app {
 namespace {
 
-Error refused_set(const char* field, std::string rule) {
-  return {ErrorKind::kUsage, "the set cannot be worked on", field, std::move(rule),
-          "see calibrations/work in openapi.json"};
-}
+constexpr const char* kNoSet = "the set cannot be worked on";
 
 Result<Reply> replied(Result<Json> document, int status = 200) {
   if (!document) return std::move(document).error();
@@ -32,23 +27,14 @@ Result<Reply> replied(Result<Json> document, int status = 200) {
 Result<Reply> begin_or_go_on(const RigParts& parts, const Call& call) {
   const Result<Json> body = command_in(parts, call);
   if (!body) return body.error();
-  for (const char* key : {"part", "name", "description", "from"}) {
-    if (const auto found = body->find(key); found != body->end() && !found->is_string())
-      return refused_set(key, "must be a text");
-  }
-  const std::optional<SetPart> part = set_part_of(body->value("part", ""));
-  if (!part) return refused_set("part", fmt::format("must be one of {}", fmt::join(set_part_names(), ", ")));
+  const Result<SetWorkRequest> asked =
+      read_body<SetWorkRequest>(*body, {kNoSet, "a set", "POST calibrations/work"});
+  if (!asked) return asked.error();
   SetKeeper::Wish wish;
-  wish.part = *part;
-  wish.name = body->value("name", "");
-  wish.description = body->value("description", "");
-  if (const auto thing = body->find("thing"); thing != body->end()) {
-    if (!thing->is_object()) return refused_set("thing", "must be an object, as GET forms describes it");
-    if (!wish.description.empty()) return refused_set("thing", "either it or description may be named");
-    wish.description = toml_of(*thing);
-  }
-  const std::string from = body->value("from", "");
-  if (!from.empty()) wish.from = parts.rig.folder() / from;
+  wish.part = *set_part_of(asked->part);
+  wish.name = asked->name;
+  wish.description = asked->thing.empty() ? asked->description : toml_of(asked->thing);
+  if (!asked->from.empty()) wish.from = parts.rig.folder() / asked->from;
   return replied(parts.sets.begin(wish));
 }
 
@@ -62,10 +48,10 @@ Result<Reply> photograph_next(const RigParts& parts, const Call& call) {
 Result<Reply> leave_out_or_take_back(const RigParts& parts, const Call& call) {
   const Result<Json> body = command_in(parts, call);
   if (!body) return body.error();
-  const Json name = body->value("name", Json()), out = body->value("out", Json(true));
-  if (!name.is_string()) return refused_set("name", "must be the name of a photograph");
-  if (!out.is_boolean()) return refused_set("out", "must be true or false");
-  return replied(parts.sets.leave_out(name.get<std::string>(), out.get<bool>()));
+  const Result<LeaveOutRequest> wish =
+      read_body<LeaveOutRequest>(*body, {kNoSet, "it", "POST calibrations/work/leave-out"});
+  if (!wish) return wish.error();
+  return replied(parts.sets.leave_out(wish->name, wish->out));
 }
 
 Json json_of(const ListedCalibration& one, const std::filesystem::path& root,
@@ -105,24 +91,21 @@ Result<Reply> history_of_rig(const RigParts& parts, const Call&) {
 Result<Reply> accept(const RigParts& parts, const Call& call) {
   const Result<Json> body = command_in(parts, call);
   if (!body) return body.error();
+  const Result<AcceptRequest> wish = read_body<AcceptRequest>(
+      *body, {"no calibration can be accepted so", "it", "POST calibrations/accept"});
+  if (!wish) return wish.error();
   const Result<std::filesystem::path> folder =
-      folder_below(parts.rig.folder(), body->value("calibration", Json()), "calibration");
-  if (!folder && folder.error().kind == ErrorKind::kUsage) {
-    return Error{ErrorKind::kUsage, "no calibration can be accepted so", "calibration", folder.error().why,
-                 "see calibrations/accept in openapi.json"};
-  }
+      folder_below(parts.rig.folder(), wish->calibration.string(), "calibration");
   if (!folder) return folder.error();
-  const Json dry = body->value("dry_run", Json(false));
-  if (!dry.is_boolean()) return refused_set("dry_run", "must be true or false");
   const Result<CalibrationChange> change = change_between(capture::calibration_now(parts.rig), *folder);
   if (!change) return change.error();
-  if (dry == false) {
+  if (!wish->dry_run) {
     if (Result<void> named = name_calibration(parts.rig.file, *folder); !named)
       return std::move(named).error();
   }
   Json document = json_of(*change);
   document["words"] = words_of(*change);
-  document["accepted"] = dry == false;
+  document["accepted"] = !wish->dry_run;
   return json_reply(document);
 }
 

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "app/server/api/api.h"
+#include "app/server/api/requests.h"
 #include "app/server/api/scan_body.h"
 
 namespace weft::app {
@@ -15,15 +16,12 @@ Result<Reply> take_controls(const RigParts& parts, const Call& call) {
                        {"name", parts.controls.holder()},
                        {"lease_s", Controls::kLease.count()}});
   }
-  const Json name = body->value("name", Json()), take = body->value("take", Json(false));
-  if (!name.is_string() || !take.is_boolean()) {
-    return Error{ErrorKind::kUsage, "the controls cannot be taken", name.is_string() ? "take" : "name",
-                 name.is_string() ? "must be true or false" : "must be a text",
-                 "see POST control in openapi.json"};
-  }
-  const Result<std::string> id = parts.controls.take(name.get<std::string>(), take.get<bool>());
+  const Result<ControlRequest> wish =
+      read_body<ControlRequest>(*body, {"the controls cannot be taken", "the controls", "POST control"});
+  if (!wish) return wish.error();
+  const Result<std::string> id = parts.controls.take(wish->name, wish->take);
   if (!id) return id.error();
-  return json_reply({{"control", *id}, {"name", name}, {"lease_s", Controls::kLease.count()}});
+  return json_reply({{"control", *id}, {"name", wish->name}, {"lease_s", Controls::kLease.count()}});
 }
 
 }  // namespace

@@ -1,28 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <charconv>
 #include <string>
 #include <vector>
 
 #include "app/server/api/api.h"
 #include "app/server/api/frame_tile.h"
-#include "app/server/api/scan_body.h"
+#include "app/server/api/requests.h"
 
 namespace weft::app {
 namespace {
 
-constexpr double kLongestShot_us = 30e6;
-
-Error refused(const char* field, std::string rule) {
-  return {ErrorKind::kUsage, "the devices cannot be asked for this", field, std::move(rule),
-          "see rig/devices, rig/light and rig/test-shot in openapi.json"};
-}
-
-Result<int> led_of(const Json& value, const RigParts& parts, int least) {
-  const bool is_there = value.is_number_integer() && value >= least && value <= parts.rig.leds;
-  if (is_there) return value.get<int>();
-  return refused("led", fmt::format("must be {} to {}", least, parts.rig.leds));
+BodyWords words_of(const char* subject, const char* call) {
+  return {"the devices cannot be asked for this", subject, call};
 }
 
 Json devices_of(const RigParts& parts) {
@@ -34,9 +23,10 @@ Json devices_of(const RigParts& parts) {
 Result<Reply> open_or_close(const RigParts& parts, const Call& call) {
   const Result<Json> body = command_in(parts, call);
   if (!body) return body.error();
-  const Json open = body->value("open", Json());
-  if (!open.is_boolean()) return refused("open", "must be true or false");
-  if (Result<void> done = open.get<bool>() ? parts.attendance.open() : parts.attendance.close(); !done)
+  const Result<DevicesRequest> wish =
+      read_body<DevicesRequest>(*body, words_of("the devices", "POST rig/devices"));
+  if (!wish) return wish.error();
+  if (Result<void> done = wish->open ? parts.attendance.open() : parts.attendance.close(); !done)
     return std::move(done).error();
   return json_reply(devices_of(parts));
 }
@@ -50,33 +40,21 @@ Result<Reply> lit_reply(const Result<Attendance::Lit>& lit) {
 Result<Reply> light(const RigParts& parts, const Call& call) {
   const Result<Json> body = command_in(parts, call);
   if (!body) return body.error();
-  const Json round = body->value("round", Json(false));
-  if (!round.is_boolean()) return refused("round", "must be true or false");
-  if (round.get<bool>()) {
-    if (body->contains("leds")) return refused("leds", "must be absent where LEDs take turns");
-    return lit_reply(parts.attendance.light_in_turns());
-  }
-  const Json list = body->value("leds", Json());
-  if (!list.is_array() || list.size() > 2) return refused("leds", "must be a list of no LED, one or two");
-  std::vector<int> leds;
-  for (const Json& each : list) {
-    const Result<int> led = led_of(each, parts, 1);
-    if (!led) return led.error();
-    leds.push_back(*led);
-  }
-  if (leds.size() == 2 && leds[0] == leds[1]) return refused("leds", "must be two different ones");
-  return lit_reply(parts.attendance.light(leds));
+  LightRequest any;
+  any.most_leds = parts.rig.leds;
+  const Result<LightRequest> wish = read_body(*body, words_of("a light", "POST rig/light"), any);
+  if (!wish) return wish.error();
+  return lit_reply(wish->round ? parts.attendance.light_in_turns() : parts.attendance.light(wish->leds));
 }
 
 Result<Reply> begin_shot(const RigParts& parts, const Call& call) {
   const Result<Json> body = command_in(parts, call);
   if (!body) return body.error();
-  const Result<int> led = led_of(body->value("led", Json()), parts, 0);
-  if (!led) return led.error();
-  const Json exposure = body->value("exposure_us", Json());
-  if (!exposure.is_number() || !(exposure > 0) || exposure > kLongestShot_us)
-    return refused("exposure_us", fmt::format("must be above 0 and at most {:.0f}", kLongestShot_us));
-  const Result<int> id = parts.attendance.shoot(*led, exposure.get<double>());
+  TestShotRequest any;
+  any.most_leds = parts.rig.leds;
+  const Result<TestShotRequest> wish = read_body(*body, words_of("a test shot", "POST rig/test-shot"), any);
+  if (!wish) return wish.error();
+  const Result<int> id = parts.attendance.shoot(wish->led, wish->exposure_us);
   if (!id) return id.error();
   return json_reply({{"id", *id}}, kAccepted);
 }
@@ -127,7 +105,8 @@ Result<Attendance::Look> next_look(const RigParts& parts, const Call& call) {
     const std::string& text = found->second;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), after);
     if (error != std::errc() || end != text.data() + text.size() || after < 0)
-      return refused("after", "must be the number of a picture, from 0");
+      return Error{ErrorKind::kUsage, "there is no such picture", "after",
+                   "must be the number of one, from 0", "see GET rig/live/frame in openapi.json"};
   }
   return parts.attendance.look(after);
 }

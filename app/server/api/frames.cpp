@@ -7,6 +7,7 @@
 
 #include "app/server/api/api.h"
 #include "app/server/api/frame_tile.h"
+#include "app/server/api/requests.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_choice.h"
 #include "app/server/http/error_json.h"
@@ -16,7 +17,6 @@ namespace weft::app {
 namespace {
 
 constexpr int kBusy = 503;
-constexpr double kLongestAgain_us = 1e9;
 
 /// Too many pictures at once is this server's fault, not a conflict with the rig's state.
 Result<Reply> busy_or(const Error& error) {
@@ -113,22 +113,18 @@ Result<Reply> again(const RigParts& parts, const Call& call) {
   if (!body) return body.error();
   const Result<std::string> by = parts.controls.commander(call.control);
   if (!by) return by.error();
-  const Json exposure = body->value("exposure_us", Json(0));
-  if (!exposure.is_number() || exposure < 0 || exposure > kLongestAgain_us) {
-    return Error{
-        ErrorKind::kUsage, "the shot cannot be taken again", "exposure_us",
-        fmt::format("must be above 0 and at most {:.0f}, or absent: the session's", kLongestAgain_us),
-        "see frames/{index}/again in openapi.json"};
-  }
-  if (exposure > 0) {
-    const Result<double> settable = parts.attendance.settable_us(exposure.get<double>());
+  const Result<AgainRequest> wish = read_body<AgainRequest>(
+      *body, {"the shot cannot be taken again", "a shot that is taken again", "frames/{index}/again"});
+  if (!wish) return wish.error();
+  if (wish->exposure_us > 0) {
+    const Result<double> settable = parts.attendance.settable_us(wish->exposure_us);
     if (!settable) return settable.error();
   }
   const Result<Session> session = parts.library.session(call.segments.at(0));
   if (!session) return session.error();
   const Result<Shot> shot = library::stored_shot(*session, call.segments.at(1));
   if (!shot) return shot.error();
-  Result<capture::ScanRequest> request = request_again(*session, parts.rig, *shot, exposure.get<double>());
+  Result<capture::ScanRequest> request = request_again(*session, parts.rig, *shot, wish->exposure_us);
   if (!request) return std::move(request).error();
   if (Result<void> begun = parts.keeper.begin(std::move(*request), *by); !begun)
     return std::move(begun).error();

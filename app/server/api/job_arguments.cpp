@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <type_traits>
 
 namespace weft::app {
@@ -14,15 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLongestSentence = 500;
-constexpr std::size_t kLongestDocument = 100000;  // what Linux takes as one argument is 131072
-constexpr std::size_t kMostOfList = 2000;
 constexpr const char* kSet = "moved";  // names a set of photographs where a session would do too
-
-bool is_sentence(const std::string& text) {
-  return !text.empty() && text.size() <= kLongestSentence &&
-         std::ranges::none_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-}
 
 // Of "-o,--output" the long name.
 std::string long_option_of(const Field& field) {
@@ -34,67 +23,6 @@ std::string long_option_of(const Field& field) {
 
 bool is_word_of_its_own(const Field& field) {
   return !option_of(field).starts_with('-') && !option_of(field).starts_with('!');
-}
-
-// Why a value does not fit its field; else it is read.
-std::string read_value(const Field& /*field*/, const Json& said, bool& value) {
-  if (!said.is_boolean()) return "must be true or false";
-  value = said.get<bool>();
-  return "";
-}
-
-std::string read_value(const Field& field, const Json& said, double& value) {
-  const double number = said.is_number() ? said.get<double>() : std::nan("");
-  if (!field.range.holds(number)) return rule_of(field.range);
-  value = number;
-  return "";
-}
-
-std::string read_value(const Field& field, const Json& said, int& value) {
-  const double number = said.is_number() ? said.get<double>() : std::nan("");
-  const bool is_whole = number == std::floor(number) && std::abs(number) < std::numeric_limits<int>::max();
-  if (!is_whole || !field.range.holds(number)) return rule_of(field.range, true);
-  value = static_cast<int>(number);
-  return "";
-}
-
-std::string read_value(const Field& field, const Json& said, std::string& value) {
-  if (!said.is_string()) return "must be a text";
-  const std::string& text = said.get_ref<const std::string&>();
-  if (field.is_sentence && !is_sentence(text))
-    return fmt::format("must be a text of 1 to {} bytes on one line", kLongestSentence);
-  if (!field.is_sentence && !is_plain(text)) return "must be a plain word";
-  if (!field.words.empty() && std::ranges::find(field.words, text) == field.words.end())
-    return rule_of_words(field.words, text);
-  value = text;
-  return "";
-}
-
-std::string read_value(const Field& /*field*/, const Json& said, Json& value) {
-  if (!said.is_object()) return "must be an object";
-  if (said.dump().size() > kLongestDocument) return "is too long";
-  value = said;
-  return "";
-}
-
-template <typename T>
-std::string read_value(const Field& field, const Json& said, std::optional<T>& value) {
-  value.emplace();
-  return read_value(field, said, *value);
-}
-
-template <typename T>
-std::string read_value(const Field& field, const Json& said, std::vector<T>& values) {
-  const auto least = static_cast<std::size_t>(std::max(1, field.fewest));
-  const std::size_t most = field.most > 0 ? static_cast<std::size_t>(field.most) : kMostOfList;
-  if (!said.is_array() || said.size() < least || said.size() > most)
-    return fmt::format("must be a list of {} to {}", least, most);
-  values.resize(said.size());
-  for (std::size_t i = 0; i < said.size(); ++i) {
-    const std::string why = read_value(field, said[i], values[i]);
-    if (!why.empty()) return "each of it " + why;
-  }
-  return "";
 }
 
 // As the verb reads it.
@@ -113,65 +41,33 @@ std::string argument_of(const Field& field, const T& value) {
 
 }  // namespace
 
+JobArguments::JobArguments(const Json& body, const JobPlaces& places, JobSpec& spec)
+    : BodyFields(body, {"job cannot be read", fmt::format("a {} job", spec.kind), "POST jobs"}),
+      places_(places),
+      spec_(spec) {
+  know("kind");
+  know("request_id");
+}
+
 bool JobArguments::is_said(const std::string& field) const {
   return body_.contains(field) || (field == "session" && is_known(kSet) && body_.contains(kSet));
 }
 
-bool JobArguments::is_known(const std::string& field) const {
-  return std::ranges::find(known_, field) != known_.end();
-}
-
-void JobArguments::refuse(const std::string& field, const std::string& rule) {
-  if (!error_) error_ = unfit_job(field, rule);
-}
-
-void JobArguments::require(bool holds, const char* field, const std::string& rule) {
-  if (!holds) refuse(field, rule);
-}
-
-void JobArguments::exclude(const char* field, const char* other) {
-  if (is_said(field) && is_said(other)) refuse(field, fmt::format("either it or {} may be named", other));
-}
-
-void JobArguments::need(const char* field, const char* other) {
-  if (is_said(field) && !is_said(other)) refuse(field, fmt::format("needs {} beside it", other));
-}
-
 void JobArguments::need_one(const std::vector<const char*>& fields) {
-  std::vector<std::string> others;
+  std::vector<const char*> all;
   for (const char* field : fields) {
-    if (is_said(field)) return;
-    if (is_known(field)) others.emplace_back(field);
-    if (std::string_view(field) == "session" && is_known(kSet)) others.emplace_back(kSet);
+    all.push_back(field);
+    if (std::string_view(field) == "session") all.push_back(kSet);
   }
-  const std::string first = others.front();
-  others.erase(others.begin());
-  miss(first, others.empty() ? "" : fmt::format(", or in its place {}", fmt::join(others, ", ")));
-}
-
-void JobArguments::miss(const std::string& field, const std::string& others) {
-  if (!missing_) missing_ = unfit_job(field, fmt::format("is needed by a {} job{}", spec_.kind, others));
-}
-
-Result<void> JobArguments::status() const {
-  for (const auto& [key, value] : body_.items()) {
-    if (!is_known(key))
-      return unfit_job(key.substr(0, 40), fmt::format("is no field of a {} job; did you mean '{}'",
-                                                      spec_.kind, nearest_word(known_, key)));
-  }
-  if (error_) return *error_;
-  return missing_ ? Result<void>(*missing_) : Result<void>();
+  BodyFields::need_one(all);
 }
 
 bool JobArguments::begin(const Field& field) {
-  if (field.said == Said::kAtThisMachine) return false;
-  known_.emplace_back(field.name);
-  if (field.path == PathTo::kSessionOrSet) {
-    known_.emplace_back(kSet);
+  if (field.said != Said::kAtThisMachine && field.path == PathTo::kSessionOrSet) {
+    know(kSet);
     if (body_.contains(field.name)) exclude(kSet, field.name);
   }
-  if (!is_said(field.name) && field.need == kMustSay) miss(field.name, "");
-  return is_said(field.name) && !error_;
+  return BodyFields::begin(field);
 }
 
 void JobArguments::add(const Field& field, std::string argument) {
@@ -182,6 +78,11 @@ void JobArguments::add(const Field& field, std::string argument) {
   } else {
     options_.insert(options_.end(), {long_option_of(field), std::move(argument)});
   }
+}
+
+void JobArguments::add_flag(const Field& field, bool is_on) {
+  const bool is_option_said = is_on != option_of(field).starts_with('!');
+  if (is_option_said && field.said != Said::kToServer) options_.push_back(long_option_of(field));
 }
 
 Result<fs::path> JobArguments::find_place(const Field& field, const Json& said) const {
@@ -196,7 +97,7 @@ Result<fs::path> JobArguments::find_place(const Field& field, const Json& said) 
       return file_below(places_.folder, said, field.name);
     case PathTo::kNamed: {
       std::string name;
-      const std::string why = read_value(field, said, name);
+      const std::string why = read_value(field, said, &name);
       if (!why.empty()) return unfit_job(field.name, why);
       return fs::path(name);
     }
@@ -210,10 +111,7 @@ Result<fs::path> JobArguments::find_place(const Field& field, const Json& said) 
 void JobArguments::read_place(const Field& field, const Json& said, fs::path& place) {
   const bool is_set = field.path == PathTo::kSessionOrSet && !body_.contains(field.name);
   Result<fs::path> found = is_set ? folder_below(places_.folder, said, kSet) : find_place(field, said);
-  if (!found) {
-    if (!error_) error_ = found.error();
-    return;
-  }
+  if (!found) return refuse(found.error());
   place = std::move(*found);
   if (field.said == Said::kToServer) return;
   const bool is_there = field.path != PathTo::kNewFolder && field.path != PathTo::kNamed;
@@ -221,18 +119,6 @@ void JobArguments::read_place(const Field& field, const Json& said, fs::path& pl
   const bool is_worked_on = is_word_of_its_own(field) || field.path == PathTo::kSessionOrSet;
   if (is_worked_on) spec_.of = said.get<std::string>();
   add(field, place.string());
-}
-
-template <typename T>
-void JobArguments::read(const Field& field, const Json& said, T& value) {
-  const std::string why = read_value(field, said, value);
-  if (!why.empty()) return refuse(field.name, why);
-  if constexpr (std::is_same_v<T, bool>) {
-    const bool is_option_said = value != option_of(field).starts_with('!');
-    if (is_option_said && field.said != Said::kToServer) options_.push_back(long_option_of(field));
-  } else {
-    add(field, argument_of(field, value));
-  }
 }
 
 void JobArguments::take(const Field& field, Value value) {
@@ -246,22 +132,24 @@ void JobArguments::take(const Field& field, Value value) {
           for (const Json& one : said.is_array() ? said : Json::array({said}))
             read_place(field, one, each->emplace_back());
         } else {
-          read(field, said, *each);
+          const std::string why = read_value(field, said, each);
+          if (!why.empty()) return refuse(field.name, why);
+          if constexpr (std::is_same_v<T, bool>) {
+            add_flag(field, *each);
+          } else {
+            add(field, argument_of(field, *each));
+          }
         }
       },
       value);
 }
 
-void JobArguments::choose(const Field& field, Words words, std::size_t /*now*/,
+void JobArguments::choose(const Field& field, Words words, std::size_t now,
                           const std::function<void(std::size_t)>& choose) {
-  if (!begin(field)) return;
-  Field of_words = field;
-  of_words.words = {words.begin(), words.end()};
-  std::string word;
-  const std::string why = read_value(of_words, body_[field.name], word);
-  if (!why.empty()) return refuse(field.name, why);
-  choose(static_cast<std::size_t>(std::ranges::find(of_words.words, word) - of_words.words.begin()));
-  add(field, word);
+  BodyFields::choose(field, words, now, [&](std::size_t chosen) {
+    choose(chosen);
+    add(field, words[chosen]);
+  });
 }
 
 void JobSchema::exclude(const char* field, const char* other) {

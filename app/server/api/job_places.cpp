@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/server/api/job_places.h"
 
-#include <algorithm>
-#include <cctype>
-
+#include "app/server/api/body_fields.h"
 #include "core/files.h"
 #include "library/session_files.h"
 
@@ -12,7 +10,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLongestWord = 100;
 constexpr std::size_t kLongestFolder = 200;
 
 // Words between slashes, below a folder.
@@ -48,14 +45,6 @@ Result<fs::path> what_is_below(const fs::path& root, const Json& name, const cha
 
 Error unfit_job(const std::string& field, const std::string& rule) {
   return {ErrorKind::kUsage, "job cannot be read", field, rule, "see POST jobs in openapi.json"};
-}
-
-bool is_plain(std::string_view text) {
-  constexpr std::string_view kAllowed = "-_.:";
-  return !text.empty() && text.size() <= kLongestWord && text[0] != '-' && text[0] != '.' &&
-         std::ranges::all_of(text, [&](unsigned char c) {
-           return std::isalnum(c) != 0 || kAllowed.find(static_cast<char>(c)) != kAllowed.npos;
-         });
 }
 
 Result<fs::path> folder_below(const fs::path& root, const Json& name, const char* field) {

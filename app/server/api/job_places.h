@@ -38,10 +38,6 @@ struct JobPlaces {
 /// The refusal of a field of a job's body.
 Error unfit_job(const std::string& field, const std::string& rule);
 
-/// Letters, digits and "-_.:". It never begins with a dash, so that it is taken for no option, nor with a
-/// dot.
-bool is_plain(std::string_view text);
-
 /// What a field of a body names, below a folder where no link leads out of it: a folder or a file that is
 /// there, or a folder that is not, whose parent is then made. kUsage, kNoInput, kCannotCreate.
 Result<std::filesystem::path> folder_below(const std::filesystem::path& root, const Json& name,

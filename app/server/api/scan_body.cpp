@@ -3,136 +3,146 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <numeric>
 #include <set>
 #include <utility>
 
-#include "core/text.h"
+#include "app/jobs/described_fields.h"
+#include "app/server/api/body_fields.h"
+#include "core/field_json.h"
 #include "library/metadata.h"
 #include "library/session_name.h"
 
 namespace weft::app {
 namespace {
 
-constexpr std::size_t kMostFabricBytes = 200;
-constexpr std::array<std::string_view, 18> kFields = {
-    "session",      "fabric",    "cloth_height_mm", "metadata",   "exposure_us", "iso",
-    "f_number",     "leds",      "repeat",          "bracket",    "copy",        "dry_run",
-    "accept_moved", "polariser", "below",           "request_id", "tilt_deg",    "downhill_deg"};
+constexpr int kLongestName = 200;
 
 Error refuse(const std::string& where, std::string why, std::string remedy) {
   return {ErrorKind::kUsage, "the request cannot be used", where, std::move(why), std::move(remedy)};
 }
 
-/// Reads the fields of one object; the first that is wrong is remembered, and the rest is not looked at.
-class Fields {
- public:
-  explicit Fields(const Json& object) : object_(object) {}
+template <typename T>
+bool are_different(const std::vector<T>& values) {
+  return std::set<T>(values.begin(), values.end()).size() == values.size();
+}
 
-  template <typename Read>
-  void read(const char* key, const char* allowed, const Read& take) {
-    const auto at = object_.find(key);
-    if (error_ || at == object_.end() || at->is_null()) return;
-    if (!take(*at)) {
-      error_ = refuse(key, "is " + at->dump().substr(0, 60), fmt::format("give {}", allowed));
-    }
-  }
-  void number(const char* key, const char* allowed, double least, double most, double& value) {
-    read(key, allowed, [&](const Json& json) {
-      if (!json.is_number() || !(json.get<double>() >= least && json.get<double>() <= most)) return false;
-      value = json.get<double>();
-      return true;
-    });
-  }
-  void text(const char* key, const char* allowed, std::string& value, bool (*fits)(const std::string&)) {
-    read(key, allowed, [&](const Json& json) {
-      if (!json.is_string() || !fits(json.get_ref<const std::string&>())) return false;
-      value = json.get<std::string>();
-      return true;
-    });
-  }
-  void flag(const char* key, bool& value) {
-    read(key, "true or false", [&](const Json& json) {
-      if (json.is_boolean()) value = json.get<bool>();
-      return json.is_boolean();
-    });
-  }
-  const std::optional<Error>& error() const { return error_; }
+/// Which shots are taken.
+void describe_shots(Fields& fields, ScanWish& wish) {
+  fields.value({.name = "leds",
+                .says = "LEDs, numbered from 1: 1,4,7; default all",
+                .range = {1, static_cast<double>(wish.has.leds)},
+                .fewest = 1,
+                .most = wish.has.leds},
+               wish.leds);
+  fields.require(are_different(wish.leds), "leds", "must be different ones");
+  fields.value(
+      {.name = "bracket",
+       .says = "Each LED once more at so many times the exposure: for cloth that one exposure cannot "
+               "hold",
+       .range = {0.001, 100}},
+      wish.bracket);
+  fields.value({.name = "polariser",
+                .says = "How the films stand for each LED, crossed, parallel or crossed,parallel: one after "
+                        "the other, and the first is solved; default [polariser] of the rig file",
+                .words = wish.has.polariser},
+               wish.polariser);
+  fields.require(are_different(wish.polariser), "polariser", "must be different ones");
+  fields.require(wish.polariser.empty() || !wish.has.polariser.empty(), "polariser",
+                 "must be absent: the rig file has no [polariser]");
+  fields.value({.name = "below",
+                .says = "Do not light the cloth from below, though the rig file has [below]",
+                .option = "!--no-below"},
+               wish.below);
+  fields.require(!wish.below || wish.has.below, "below", "must be false: the rig file has no [below]");
+  fields.value({.name = "repeat",
+                .says = "Do not light the first LED once more at the end, to see drift",
+                .option = "!--no-repeat"},
+               wish.repeat);
+}
 
- private:
-  const Json& object_;
-  std::optional<Error> error_;
+/// As `request` has it.
+ScanWish wish_of(const capture::ScanRequest& request, int leds) {
+  ScanWish wish;
+  wish.has = {leds, {}, request.below};
+  for (const Polariser state : request.polariser.states) wish.has.polariser.emplace_back(name_of(state));
+  wish.repeat = request.repeat;
+  wish.below = request.below;
+  return wish;
+}
+
+void take_shots(const ScanWish& wish, capture::ScanRequest& request) {
+  if (!wish.leds.empty()) request.leds = wish.leds;
+  if (wish.bracket) request.bracket = wish.bracket;
+  request.repeat = wish.repeat;
+  request.below = wish.below;
+  if (wish.polariser.empty()) return;
+  request.polariser.states.clear();
+  for (const std::string& state : wish.polariser)
+    request.polariser.states.push_back(polariser_of(state).value_or(Polariser::kNone));
+}
+
+/// The shots of a session that was begun, as its "plan" names them.
+struct BegunShots {
+  ScanWish wish;
 };
-
-std::optional<Error> unknown_field(const Json& body) {
-  for (const auto& [key, value] : body.items()) {
-    if (std::ranges::find(kFields, key) != kFields.end()) continue;
-    const auto nearest = std::ranges::min_element(kFields, {}, [&name = key](std::string_view field) {
-      return edit_distance(name.substr(0, 60), field);
-    });
-    return refuse(key.substr(0, 60), "there is no such field", fmt::format("did you mean '{}'", *nearest));
-  }
-  return std::nullopt;
-}
-
-bool is_fabric(const std::string& text) {
-  return !text.empty() && text.size() <= kMostFabricBytes &&
-         std::ranges::none_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-}
-
-bool take_leds(const Json& json, int most, std::vector<int>& leds) {
-  if (!json.is_array() || json.empty() || json.size() > static_cast<std::size_t>(most)) return false;
-  std::set<int> seen;
-  leds.clear();
-  for (const Json& led : json) {
-    const bool fits = led.is_number_integer() && led.get<double>() >= 1 && led.get<double>() <= most;
-    if (!fits || !seen.insert(led.get<int>()).second) return false;
-    leds.push_back(led.get<int>());
-  }
-  return true;
-}
-
-bool take_states(const Json& json, const std::vector<Polariser>& possible, std::vector<Polariser>& states) {
-  if (!json.is_array() || json.empty() || json.size() > possible.size()) return false;
-  states.clear();
-  for (const Json& name : json) {
-    const auto state = name.is_string() ? polariser_of(name.get_ref<const std::string&>()) : std::nullopt;
-    if (!state || std::ranges::count(possible, *state) == 0 || std::ranges::count(states, *state) > 0)
-      return false;
-    states.push_back(*state);
-  }
-  return true;
-}
-
-/// Which shots are taken; the rig has no other polariser and light below than `rig` asks for.
-void read_plan(Fields& fields, int most_leds, const capture::ScanRequest& rig,
-               capture::ScanRequest& request) {
-  const std::string leds = fmt::format("different numbers from 1 to {}", most_leds);
-  fields.read("leds", leds.c_str(),
-              [&](const Json& value) { return take_leds(value, most_leds, request.leds); });
-  fields.flag("repeat", request.repeat);
-  fields.read("bracket", "0.001 to 100", [&](const Json& value) {
-    if (!value.is_number() || !(value.get<double>() >= 0.001 && value.get<double>() <= 100)) return false;
-    request.bracket = value.get<double>();
-    return true;
-  });
-  const std::string states = rig.polariser.states.empty()
-                                 ? "none: the rig file has no [polariser]"
-                                 : "different ones of [polariser] states in the rig file";
-  fields.read("polariser", states.c_str(), [&](const Json& value) {
-    return take_states(value, rig.polariser.states, request.polariser.states);
-  });
-  fields.read("below", rig.below ? "true or false" : "false: the rig file has no [below]",
-              [&](const Json& value) {
-                if (!value.is_boolean() || (value.get<bool>() && !rig.below)) return false;
-                request.below = value.get<bool>();
-                return true;
-              });
+void describe(Fields& fields, BegunShots& begun) {
+  describe_shots(fields, begun.wish);
 }
 
 }  // namespace
+
+void describe(Fields& fields, ScanWish& wish) {
+  fields.value({.name = "session",
+                .says = "Session, NAME.weft, new or unfinished; default the one that the same request left "
+                        "unfinished in the last hour, else a new one by the rig file's session_name",
+                .path = PathTo::kSession,
+                .option = "-o,--output"},
+               wish.session);
+  fields.value({.name = "fabric", .says = "Name of the cloth", .most = kLongestName, .is_sentence = true},
+               wish.fabric);
+  describe_exposure(fields, wish.exposure_us, {0, 1e9}, "metered for this cloth");
+  fields.value({"iso", "Of the camera; default the rig file's", {1, 1e6}}, wish.iso);
+  fields.value({"f_number", "Of the camera; default the rig file's", {0.5, 128}}, wish.f_number);
+  describe_shots(fields, wish);
+  fields.value({.name = "cloth_height_mm",
+                .says = "Of the cloth's surface above the table, mm; default the rig file's",
+                .range = {-1000, 1000},
+                .option = "--height"},
+               wish.cloth_height_mm);
+  fields.value(
+      {.name = "tilt_deg",
+       .says = "The cloth lies on a wedge that tilts it by so many degrees: a second pose, whose lobe "
+               "weft solve --second-pose seeks together with the first one's; default 0",
+       .range = {0, kMostTilt_deg}},
+      wish.tilt_deg);
+  fields.value({.name = "downhill_deg",
+                .says = "With tilt: azimuth to which it falls, degrees from x towards y; default 0",
+                .range = {-360, 360}},
+               wish.downhill_deg);
+  fields.need("downhill_deg", "tilt_deg");
+  fields.value({.name = "metadata",
+                .says = "KEY=VALUE to keep with the session: id, weight, side, notes",
+                .is_said_again = true},
+               wish.metadata);
+  fields.value({.name = "accept_moved",
+                .says = "Scan although the last check of the calibration did not pass: the reason, which is "
+                        "kept",
+                .most = kLongestName,
+                .is_sentence = true},
+               wish.accept_moved);
+  fields.value({.name = "copy",
+                .says = "Make no second copy, though the rig file names a folder for one",
+                .option = "!--no-copy"},
+               wish.copy);
+  fields.value({.name = "request_id",
+                .says = "The same as that of the last scan is that scan: a click that comes twice",
+                .most = kLongestName,
+                .said = Said::kToServer,
+                .is_sentence = true},
+               wish.request_id);
+  fields.value({"dry_run", "Only say which session would be made or gone on with"}, wish.dry_run);
+}
 
 Result<Json> parse_body(std::string_view body) {
   if (body.find_first_not_of(" \t\r\n") == std::string_view::npos) return Json::object();
@@ -144,11 +154,12 @@ Result<Json> parse_body(std::string_view body) {
 }
 
 Result<std::string> session_in_body(const Json& body) {
-  std::string name;
-  Fields fields(body);
-  fields.text("session", "a name of letters, digits, '.', '_' and '-'", name, library::is_session_name);
-  if (fields.error()) return *fields.error();
-  return name;
+  const Json name = body.value("session", Json());
+  if (name.is_null()) return std::string();
+  if (name.is_string() && library::is_session_name(name.get_ref<const std::string&>()))
+    return name.get<std::string>();
+  return refuse("session", fmt::format("is {}", name.dump().substr(0, 60)),
+                "give a name of letters, digits, '.', '_' and '-'");
 }
 
 capture::ScanRequest request_of_rig(const capture::Rig& rig) {
@@ -173,45 +184,38 @@ capture::ScanRequest request_of_session(const Session& session, const capture::R
   request.pose = session.pose;
   if (session.document.contains("metadata")) request.metadata = session.document["metadata"];
   if (!session.document.contains("plan") || !session.document["plan"].is_object()) return request;
-  const capture::ScanRequest of_rig = request;
+  BegunShots begun = {wish_of(request, rig.leds)};
+  begun.wish.below = false;
+  JsonReader plan(session.document["plan"], "plan");
+  describe(plan, begun);
   request.polariser.states.clear();
   request.below = false;
-  Fields plan(session.document["plan"]);
-  read_plan(plan, rig.leds, of_rig, request);
+  if (plan.status()) take_shots(begun.wish, request);
   return request;
 }
 
-Result<ScanWish> read_scan_body(const Json& body, int leds, const capture::ScanRequest& otherwise) {
-  if (auto unknown = unknown_field(body)) return std::move(*unknown);
-  const Result<std::string> name = session_in_body(body);
-  if (!name) return name.error();
-  ScanWish wish = {*name, otherwise};
-  capture::ScanRequest& request = wish.request;
-  bool copy = true;
-
-  Fields fields(body);
-  fields.text("fabric", "1 to 200 characters", request.fabric, is_fabric);
-  fields.number("cloth_height_mm", "-1000 to 1000", -1000, 1000, request.cloth_height_mm);
-  fields.number("tilt_deg", "0 to 45", 0, kMostTilt_deg, request.pose.tilt_deg);
-  fields.number("downhill_deg", "-360 to 360", -360, 360, request.pose.downhill_deg);
-  fields.number("exposure_us", "0 (metered), or up to 1e9", 0, 1e9, request.exposure.exposure_us);
-  fields.number("iso", "1 to 1e6", 1, 1e6, request.exposure.iso);
-  fields.number("f_number", "0.5 to 128", 0.5, 128, request.exposure.f_number);
-  if (const auto metadata = body.find("metadata"); metadata != body.end() && !metadata->is_null()) {
-    if (Result<void> ok = library::check_new_metadata(*metadata); !ok) return std::move(ok).error();
-    request.metadata = *metadata;
+Result<capture::ScanRequest> read_scan_body(const Json& body, int leds,
+                                            const capture::ScanRequest& otherwise) {
+  if (const Result<std::string> name = session_in_body(body); !name) return name.error();
+  const Result<ScanWish> wish =
+      read_body(body, {"the request cannot be used", "a scan", "POST scan"}, wish_of(otherwise, leds));
+  if (!wish) return wish.error();
+  capture::ScanRequest request = otherwise;
+  if (!wish->fabric.empty()) request.fabric = wish->fabric;
+  request.cloth_height_mm = wish->cloth_height_mm.value_or(request.cloth_height_mm);
+  request.pose.tilt_deg = wish->tilt_deg.value_or(request.pose.tilt_deg);
+  request.pose.downhill_deg = wish->downhill_deg.value_or(request.pose.downhill_deg);
+  request.exposure.exposure_us = wish->exposure_us.value_or(request.exposure.exposure_us);
+  request.exposure.iso = wish->iso.value_or(request.exposure.iso);
+  request.exposure.f_number = wish->f_number.value_or(request.exposure.f_number);
+  if (!wish->metadata.empty()) {
+    if (Result<void> ok = library::check_new_metadata(wish->metadata); !ok) return std::move(ok).error();
+    request.metadata = wish->metadata;
   }
-  read_plan(fields, leds, otherwise, request);
-  std::string accept_moved;
-  fields.text("accept_moved", "the reason in 1 to 200 characters", accept_moved, is_fabric);
-  if (!accept_moved.empty()) request.accepted_moved = {{"why", accept_moved}};
-  std::string request_id;  // whoever begins the scan looks at it
-  fields.text("request_id", "1 to 200 characters", request_id, is_fabric);
-  fields.flag("copy", copy);
-  fields.flag("dry_run", wish.dry_run);
-  if (fields.error()) return *fields.error();
-  if (!copy) request.copy.clear();
-  return wish;
+  take_shots(*wish, request);
+  if (!wish->accept_moved.empty()) request.accepted_moved = {{"why", wish->accept_moved}};
+  if (!wish->copy) request.copy.clear();
+  return request;
 }
 
 }  // namespace weft::app

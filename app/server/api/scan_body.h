@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
+#include "core/fields.h"
 #include "core/json_document.h"
 #include "core/result.h"
 #include "core/session.h"
@@ -16,12 +20,30 @@ namespace weft::app {
 /// levels, for text that is not UTF-8.
 Result<Json> parse_body(std::string_view body);
 
-/// What a client asks for.
+/// What a scan may be asked for, by a command or by a call. What is empty is as the rig file says, or as the
+/// session was begun that is gone on with.
 struct ScanWish {
-  std::string session;  ///< name of a new or unfinished one; empty: by the rig's template
-  capture::ScanRequest request;
+  /// What the rig has; any rig, where it is not known.
+  struct Has {
+    int leds = 10;
+    std::vector<std::string> polariser = {"crossed", "parallel"};
+    bool below = true;
+  };
+
+  std::filesystem::path session;  ///< of a call the name; empty: by the rig's template
+  std::string fabric;
+  std::optional<double> cloth_height_mm, tilt_deg, downhill_deg;
+  Json metadata = Json::object();
+  std::optional<double> exposure_us, iso, f_number;
+  std::vector<int> leds;
+  bool repeat = true, below = true, copy = true;
+  std::optional<double> bracket;
+  std::vector<std::string> polariser;
+  std::string accept_moved, request_id;
   bool dry_run = false;  ///< nothing is to begin: only say which session it would be
+  Has has;
 };
+void describe(Fields& fields, ScanWish& wish);
 
 /// The name under "session"; empty where there is none. kUsage.
 Result<std::string> session_in_body(const Json& body);
@@ -30,10 +52,10 @@ Result<std::string> session_in_body(const Json& body);
 capture::ScanRequest request_of_rig(const capture::Rig& rig);
 capture::ScanRequest request_of_session(const Session& session, const capture::Rig& rig);
 
-/// The body of POST /api/v1/scan over `otherwise`, every field optional: {"session", "fabric",
-/// "cloth_height_mm", "tilt_deg", "downhill_deg", "metadata", "exposure_us", "iso", "f_number", "leds",
-/// "repeat", "bracket", "polariser", "below", "copy", "dry_run", "accept_moved"}. kUsage with the field and
-/// what is allowed there; a field that is not known is refused, with the nearest that is.
-Result<ScanWish> read_scan_body(const Json& body, int leds, const capture::ScanRequest& otherwise);
+/// The body of POST /api/v1/scan, a ScanWish, over `otherwise`, on a rig of so many LEDs that has the films
+/// and the light below of `otherwise`. kUsage with the field and what is allowed there; a field that is not
+/// known is refused, with the nearest that is.
+Result<capture::ScanRequest> read_scan_body(const Json& body, int leds,
+                                            const capture::ScanRequest& otherwise);
 
 }  // namespace weft::app

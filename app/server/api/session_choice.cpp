@@ -62,19 +62,18 @@ bool is_exposed_as(const Session& session, const capture::ExposureSettings& aske
 /// Whether the body asks for nothing else than what the session was begun with.
 bool is_asked_for(const Session& session, const Json& body, const capture::Rig& rig) {
   const capture::ScanRequest begun = request_of_session(session, rig);
-  const Result<ScanWish> asked = read_scan_body(body, rig.leds, begun);
-  return asked && asked->request.cloth_height_mm == begun.cloth_height_mm &&
-         asked->request.pose == begun.pose && asked->request.leds == begun.leds &&
-         asked->request.repeat == begun.repeat && asked->request.bracket == begun.bracket &&
-         asked->request.below == begun.below && asked->request.polariser.states == begun.polariser.states &&
-         asked->request.metadata == begun.metadata && is_exposed_as(session, asked->request.exposure);
+  const Result<capture::ScanRequest> asked = read_scan_body(body, rig.leds, begun);
+  return asked && asked->cloth_height_mm == begun.cloth_height_mm && asked->pose == begun.pose &&
+         asked->leds == begun.leds && asked->repeat == begun.repeat && asked->bracket == begun.bracket &&
+         asked->below == begun.below && asked->polariser.states == begun.polariser.states &&
+         asked->metadata == begun.metadata && is_exposed_as(session, asked->exposure);
 }
 
 Result<SessionChoice> resumed(std::string name, const Session& session, const Json& body,
                               const capture::Rig& rig) {
-  Result<ScanWish> wish = read_scan_body(body, rig.leds, request_of_session(session, rig));
-  if (!wish) return std::move(wish).error();
-  SessionChoice choice = {std::move(name), std::move(wish->request), true};
+  Result<capture::ScanRequest> request = read_scan_body(body, rig.leds, request_of_session(session, rig));
+  if (!request) return std::move(request).error();
+  SessionChoice choice = {std::move(name), std::move(*request), true};
   choice.request.session = session.folder;
   choice.frames = static_cast<int>(session.shots.size());
   const capture::ScanRequest& asked = choice.request;
@@ -94,9 +93,9 @@ Result<SessionChoice> named(const std::string& name, const Json& body, const cap
   const Result<fs::path> folder = library::session_folder(rig.scan.sessions, name);
   if (!folder) return folder.error();
   if (!is_there(*folder)) {
-    Result<ScanWish> wish = read_scan_body(body, rig.leds, request_of_rig(rig));
-    if (!wish) return std::move(wish).error();
-    return new_one(name, std::move(wish->request), rig);
+    Result<capture::ScanRequest> request = read_scan_body(body, rig.leds, request_of_rig(rig));
+    if (!request) return std::move(request).error();
+    return new_one(name, std::move(*request), rig);
   }
   const Result<Session> session = read_session(*folder);
   if (!session) return session.error();
@@ -111,9 +110,9 @@ Result<SessionChoice> named(const std::string& name, const Json& body, const cap
 
 Result<SessionChoice> by_cloth(const Json& body, const capture::Rig& rig, LibraryService& library,
                                std::chrono::system_clock::time_point now) {
-  Result<ScanWish> wish = read_scan_body(body, rig.leds, request_of_rig(rig));
-  if (!wish) return std::move(wish).error();
-  const std::string fabric = wish->request.fabric;
+  Result<capture::ScanRequest> request = read_scan_body(body, rig.leds, request_of_rig(rig));
+  if (!request) return std::move(request).error();
+  const std::string fabric = request->fabric;
   const Result<std::vector<library::Entry>> unfinished = unfinished_of_cloth(fabric, rig, library);
   if (!unfinished) return unfinished.error();
   const std::string recent =
@@ -126,7 +125,7 @@ Result<SessionChoice> by_cloth(const Json& body, const capture::Rig& rig, Librar
   Result<std::string> name =
       library::next_session_name(rig.scan.session_name, fabric, rig.name, rig.scan.sessions, now);
   if (!name) return std::move(name).error();
-  Result<SessionChoice> choice = new_one(std::move(*name), std::move(wish->request), rig);
+  Result<SessionChoice> choice = new_one(std::move(*name), std::move(*request), rig);
   if (choice && !unfinished->empty()) choice->unfinished = unfinished->front().name;
   return choice;
 }

@@ -474,12 +474,7 @@ export interface paths {
             };
             requestBody: {
                 content: {
-                    "application/json": {
-                        /** @description Its folder, below that of the rig file */
-                        calibration: string;
-                        /** @description true: nothing is changed */
-                        dry_run?: boolean;
-                    };
+                    "application/json": components["schemas"]["AcceptRequest"];
                 };
             };
             responses: {
@@ -573,21 +568,7 @@ export interface paths {
             };
             requestBody: {
                 content: {
-                    "application/json": {
-                        /**
-                         * @description What is photographed
-                         * @enum {string}
-                         */
-                        part: "board" | "response" | "trap" | "sheet" | "chart" | "check" | "moved";
-                        /** @description Of its folder in sets/ beside the rig file; absent: the part's */
-                        name?: string;
-                        /** @description Text of board.toml, sheet.toml or chart.toml (docs/calibration.md); it or thing is needed once */
-                        description?: string;
-                        /** @description The same by its fields, as GET forms has them in things */
-                        thing?: Record<string, unknown>;
-                        /** @description Folder of the calibration that was known before, below that of the rig file or an absolute one of its machine; absent: the rig's */
-                        from?: string;
-                    };
+                    "application/json": components["schemas"]["SetWorkRequest"];
                 };
             };
             responses: {
@@ -688,12 +669,7 @@ export interface paths {
             };
             requestBody: {
                 content: {
-                    "application/json": {
-                        /** @description As the set has it */
-                        name: string;
-                        /** @description false: take it back; absent: true */
-                        out?: boolean;
-                    };
+                    "application/json": components["schemas"]["LeaveOutRequest"];
                 };
             };
             responses: {
@@ -750,12 +726,7 @@ export interface paths {
             };
             requestBody: {
                 content: {
-                    "application/json": {
-                        /** @description Who commands */
-                        name?: string;
-                        /** @description Take them over from whoever holds them */
-                        take?: boolean;
-                    };
+                    "application/json": components["schemas"]["ControlRequest"];
                 };
             };
             responses: {
@@ -853,9 +824,7 @@ export interface paths {
             };
             requestBody: {
                 content: {
-                    "application/json": {
-                        open: boolean;
-                    };
+                    "application/json": components["schemas"]["DevicesRequest"];
                 };
             };
             responses: {
@@ -920,11 +889,7 @@ export interface paths {
             };
             requestBody: {
                 content: {
-                    "application/json": {
-                        leds?: number[];
-                        /** @description In place of leds: one LED lights for as long as this is asked, each three seconds another one, as their heat allows */
-                        round?: boolean;
-                    };
+                    "application/json": components["schemas"]["LightRequest"];
                 };
             };
             responses: {
@@ -993,11 +958,7 @@ export interface paths {
             };
             requestBody: {
                 content: {
-                    "application/json": {
-                        /** @description 0: none */
-                        led: number;
-                        exposure_us: number;
-                    };
+                    "application/json": components["schemas"]["TestShotRequest"];
                 };
             };
             responses: {
@@ -1921,10 +1882,7 @@ export interface paths {
             };
             requestBody?: {
                 content: {
-                    "application/json": {
-                        /** @description 0 or absent: the session's. Another one, whose ratio to it was measured, adds a bracket and supersedes nothing */
-                        exposure_us?: number;
-                    };
+                    "application/json": components["schemas"]["AgainRequest"];
                 };
             };
             responses: {
@@ -6324,42 +6282,6 @@ export interface components {
                 folder: string;
             };
         };
-        ScanRequest: {
-            /** @description Name of a new session, or of an unfinished one to resume; default the newest unfinished one of the same scan that is at most an hour old, else a new one by the rig's template */
-            session?: string;
-            /** @description The cloth; an unfinished session brings its own */
-            fabric?: string;
-            /** @description Of the cloth's surface above the table */
-            cloth_height_mm?: number;
-            /** @description Between table and cloth, which lies on a wedge; default 0 */
-            tilt_deg?: number;
-            /** @description Azimuth to which a tilted cloth falls, from x towards y; default 0 */
-            downhill_deg?: number;
-            /** @description id, tags, composition, weight, construction, side, notes: kept as given */
-            metadata?: Record<string, unknown>;
-            /** @description 0: metered for this cloth */
-            exposure_us?: number;
-            iso?: number;
-            f_number?: number;
-            /** @description Default all */
-            leds?: number[];
-            /** @description The first LED once more at the end */
-            repeat?: boolean;
-            /** @description Each LED once more at this times the exposure */
-            bracket?: number;
-            /** @description States that each LED is photographed in, one after the other; the first is what is solved. Default those of [polariser] in the rig file, of which they must be */
-            polariser?: ("crossed" | "parallel")[];
-            /** @description The cloth once by the light below it; default true where the rig file has [below] */
-            below?: boolean;
-            /** @description The same as that of the last scan is that scan: a click that comes twice */
-            request_id?: string;
-            /** @description Begin nothing, and only say which session it would be */
-            dry_run?: boolean;
-            /** @description Why to scan although the last check of the calibration did not pass */
-            accept_moved?: string;
-            /** @description false: no second copy though the rig file names a folder for one */
-            copy?: boolean;
-        };
         BillLine: {
             /** @enum {string} */
             what: "lit" | "dark" | "repeat" | "bracket" | "polariser" | "below";
@@ -6727,6 +6649,124 @@ export interface components {
             error: Record<string, unknown> | null;
             /** @description What its verb prints with --json */
             result: Record<string, unknown> | null;
+        };
+        ScanRequest: {
+            /** @description Session, NAME.weft, new or unfinished; default the one that the same request left unfinished in the last hour, else a new one by the rig file's session_name: its name */
+            session?: string;
+            /** @description Name of the cloth */
+            fabric?: string;
+            /** @description Shutter time: 20ms, 0.5s, 1/60 or, without a unit, us; the camera's nearest is taken; default metered for this cloth */
+            exposure_us?: number;
+            /** @description Of the camera; default the rig file's */
+            iso?: number;
+            /** @description Of the camera; default the rig file's */
+            f_number?: number;
+            /** @description LEDs, numbered from 1: 1,4,7; default all */
+            leds?: number[];
+            /** @description Each LED once more at so many times the exposure: for cloth that one exposure cannot hold */
+            bracket?: number;
+            /** @description How the films stand for each LED, crossed, parallel or crossed,parallel: one after the other, and the first is solved; default [polariser] of the rig file */
+            polariser?: ("crossed" | "parallel")[];
+            /**
+             * @description Off: Do not light the cloth from below, though the rig file has [below]
+             * @default true
+             */
+            below?: boolean;
+            /**
+             * @description Off: Do not light the first LED once more at the end, to see drift
+             * @default true
+             */
+            repeat?: boolean;
+            /** @description Of the cloth's surface above the table, mm; default the rig file's */
+            cloth_height_mm?: number;
+            /** @description The cloth lies on a wedge that tilts it by so many degrees: a second pose, whose lobe weft solve --second-pose seeks together with the first one's; default 0 */
+            tilt_deg?: number;
+            /** @description With tilt: azimuth to which it falls, degrees from x towards y; default 0 */
+            downhill_deg?: number;
+            /** @description KEY=VALUE to keep with the session: id, weight, side, notes */
+            metadata?: Record<string, unknown>;
+            /** @description Scan although the last check of the calibration did not pass: the reason, which is kept */
+            accept_moved?: string;
+            /**
+             * @description Off: Make no second copy, though the rig file names a folder for one
+             * @default true
+             */
+            copy?: boolean;
+            /** @description The same as that of the last scan is that scan: a click that comes twice */
+            request_id?: string;
+            /**
+             * @description Only say which session would be made or gone on with
+             * @default false
+             */
+            dry_run?: boolean;
+        };
+        DevicesRequest: {
+            /** @description true: for a person; false: close them */
+            open: boolean;
+        };
+        LightRequest: {
+            /** @description That light together; none: all are off */
+            leds?: number[];
+            /**
+             * @description In place of leds: one LED lights for as long as this is asked, each three seconds another one, as their heat allows
+             * @default false
+             */
+            round?: boolean;
+        } & (unknown | unknown);
+        TestShotRequest: {
+            /** @description 0: none */
+            led: number;
+            /** @description Shutter time; the camera's nearest is taken */
+            exposure_us: number;
+        };
+        AgainRequest: {
+            /**
+             * @description 0: the session's. Another one, whose ratio to it was measured, adds a bracket and supersedes nothing
+             * @default 0
+             */
+            exposure_us?: number;
+        };
+        ControlRequest: {
+            /** @description Who commands */
+            name?: string;
+            /**
+             * @description Take them over from whoever holds them
+             * @default false
+             */
+            take?: boolean;
+        };
+        SetWorkRequest: {
+            /**
+             * @description What is photographed
+             * @enum {string}
+             */
+            part: "board" | "response" | "trap" | "sheet" | "chart" | "check" | "moved";
+            /** @description Of its folder in sets/ beside the rig file; default the part's */
+            name?: string;
+            /** @description Text of board.toml, sheet.toml or chart.toml (docs/calibration.md); it or thing is needed once */
+            description?: string;
+            /** @description The same by its fields, as GET forms has them in things */
+            thing?: Record<string, unknown>;
+            /** @description Folder of the calibration that was known before, below that of the rig file or an absolute one of its machine; default the rig's */
+            from?: string;
+        } & unknown;
+        LeaveOutRequest: {
+            /** @description Of a photograph, as the set has it */
+            name: string;
+            /**
+             * @description false: take it back
+             * @default true
+             */
+            out?: boolean;
+        };
+        AcceptRequest: {
+            /** @description Its folder; below the rig file's folder */
+            calibration: string;
+            /**
+             * @description Change nothing, and only say what would change
+             * @default false
+             */
+            dry_run?: boolean;
         };
         /** Solve */
         SolveJob: {

@@ -12,26 +12,25 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-Result<ScanWish> read(const std::string& body, const capture::ScanRequest& otherwise = {}) {
+Result<capture::ScanRequest> read(const std::string& body, const capture::ScanRequest& otherwise = {}) {
   const Result<Json> json = parse_body(body);
   if (!json) return json.error();
   return read_scan_body(*json, 10, otherwise);
 }
 
 TEST(ScanBody, SaysEverythingAScanMayBe) {
-  const Result<ScanWish> wish =
+  const Result<capture::ScanRequest> request =
       read(R"({"session": "satin_1", "fabric": "Satin, schräg", "cloth_height_mm": 1.5,
       "metadata": {"tags": ["red"], "weight": 120}, "exposure_us": 20000, "iso": 200, "f_number": 11,
       "leds": [3, 1], "repeat": false, "bracket": 0.25, "copy": false})");
-  ASSERT_TRUE(wish) << wish.error().message();
-  EXPECT_EQ(wish->session, "satin_1");
-  EXPECT_EQ(wish->request.fabric, "Satin, schräg");
-  EXPECT_EQ(wish->request.cloth_height_mm, 1.5);
-  EXPECT_EQ(wish->request.metadata["weight"], 120);
-  EXPECT_EQ(wish->request.exposure, (capture::ExposureSettings{20000, 200, 11}));
-  EXPECT_THAT(wish->request.leds, ElementsAre(3, 1));
-  EXPECT_FALSE(wish->request.repeat);
-  EXPECT_EQ(wish->request.bracket, 0.25);
+  ASSERT_TRUE(request) << request.error().message();
+  EXPECT_EQ(request->fabric, "Satin, schräg");
+  EXPECT_EQ(request->cloth_height_mm, 1.5);
+  EXPECT_EQ(request->metadata["weight"], 120);
+  EXPECT_EQ(request->exposure, (capture::ExposureSettings{20000, 200, 11}));
+  EXPECT_THAT(request->leds, ElementsAre(3, 1));
+  EXPECT_FALSE(request->repeat);
+  EXPECT_EQ(request->bracket, 0.25);
 }
 
 TEST(ScanBody, LeavesWhatItDoesNotNameAsItWas) {
@@ -40,16 +39,17 @@ TEST(ScanBody, LeavesWhatItDoesNotNameAsItWas) {
   rig.scan.exposure_us = 5000;
   rig.scan.cloth_height_mm = 2;
   rig.scan.copy = "backup";
-  const Result<ScanWish> wish = read(R"({"fabric": "wool", "iso": null})", request_of_rig(rig));
-  ASSERT_TRUE(wish) << wish.error().message();
-  EXPECT_EQ(wish->request.rig, "north");
-  EXPECT_EQ(wish->request.exposure, (capture::ExposureSettings{5000, 100, 8}));
-  EXPECT_EQ(wish->request.cloth_height_mm, 2);
-  EXPECT_EQ(wish->request.copy, "backup");
-  EXPECT_TRUE(read(R"({"copy": false})", request_of_rig(rig))->request.copy.empty());
-  EXPECT_EQ(wish->request.leds.size(), 10u);
+  const Result<capture::ScanRequest> request =
+      read(R"({"fabric": "wool", "iso": null})", request_of_rig(rig));
+  ASSERT_TRUE(request) << request.error().message();
+  EXPECT_EQ(request->rig, "north");
+  EXPECT_EQ(request->exposure, (capture::ExposureSettings{5000, 100, 8}));
+  EXPECT_EQ(request->cloth_height_mm, 2);
+  EXPECT_EQ(request->copy, "backup");
+  EXPECT_TRUE(read(R"({"copy": false})", request_of_rig(rig))->copy.empty());
+  EXPECT_EQ(request->leds.size(), 10u);
   rig.leds = 3;
-  EXPECT_THAT(read("{}", request_of_rig(rig))->request.leds, ElementsAre(1, 2, 3)) << "those of the rig file";
+  EXPECT_THAT(read("{}", request_of_rig(rig))->leds, ElementsAre(1, 2, 3)) << "those of the rig file";
 }
 
 TEST(ScanBody, AsksForNoFilmAndNoLightBelowThatTheRigHasNot) {
@@ -60,15 +60,16 @@ TEST(ScanBody, AsksForNoFilmAndNoLightBelowThatTheRigHasNot) {
               HasSubstr("the rig file has no [polariser]"));
   rig.below.emplace();
   rig.polariser.states = {Polariser::kCrossed, Polariser::kParallel};
-  const Result<ScanWish> all = read("{}", request_of_rig(rig));
-  EXPECT_TRUE(all->request.below);
-  EXPECT_EQ(all->request.polariser.states, rig.polariser.states);
-  EXPECT_TRUE(all->request.polariser.is_turned);
-  const Result<ScanWish> fewer = read(R"({"below": false, "polariser": ["parallel"]})", request_of_rig(rig));
+  const Result<capture::ScanRequest> all = read("{}", request_of_rig(rig));
+  EXPECT_TRUE(all->below);
+  EXPECT_EQ(all->polariser.states, rig.polariser.states);
+  EXPECT_TRUE(all->polariser.is_turned);
+  const Result<capture::ScanRequest> fewer =
+      read(R"({"below": false, "polariser": ["parallel"]})", request_of_rig(rig));
   ASSERT_TRUE(fewer) << fewer.error().message();
-  EXPECT_FALSE(fewer->request.below);
-  EXPECT_THAT(fewer->request.polariser.states, ElementsAre(Polariser::kParallel));
-  EXPECT_TRUE(fewer->request.polariser.is_turned) << "the board has to turn it there";
+  EXPECT_FALSE(fewer->below);
+  EXPECT_THAT(fewer->polariser.states, ElementsAre(Polariser::kParallel));
+  EXPECT_TRUE(fewer->polariser.is_turned) << "the board has to turn it there";
   for (const char* wrong :
        {R"({"polariser": []})", R"({"polariser": "crossed"})", R"({"polariser": ["none"]})",
         R"({"polariser": ["crossed", "crossed"]})", R"({"below": 1})"})
@@ -90,14 +91,14 @@ TEST(ScanBody, GoesOnAsItsSessionWasBegun) {
   session.cloth_height_mm = 3;
   session.document = {{"plan", {{"leds", {2, 5}}, {"repeat", false}, {"bracket", 4}}},
                       {"metadata", {{"id", "7"}}}};
-  const Result<ScanWish> wish = read(R"({"session": "a"})", request_of_session(session, {}));
-  ASSERT_TRUE(wish) << wish.error().message();
-  EXPECT_EQ(wish->request.fabric, "linen");
-  EXPECT_EQ(wish->request.cloth_height_mm, 3);
-  EXPECT_THAT(wish->request.leds, ElementsAre(2, 5));
-  EXPECT_FALSE(wish->request.repeat);
-  EXPECT_EQ(wish->request.bracket, 4);
-  EXPECT_EQ(wish->request.metadata["id"], "7");
+  const Result<capture::ScanRequest> request = read(R"({"session": "a"})", request_of_session(session, {}));
+  ASSERT_TRUE(request) << request.error().message();
+  EXPECT_EQ(request->fabric, "linen");
+  EXPECT_EQ(request->cloth_height_mm, 3);
+  EXPECT_THAT(request->leds, ElementsAre(2, 5));
+  EXPECT_FALSE(request->repeat);
+  EXPECT_EQ(request->bracket, 4);
+  EXPECT_EQ(request->metadata["id"], "7");
 }
 
 TEST(ScanBody, RefusesEachFieldThatIsWrongByName) {
@@ -125,18 +126,18 @@ TEST(ScanBody, RefusesEachFieldThatIsWrongByName) {
            {R"({"repeat": 1})", "repeat"},
            {R"({"bracket": 0})", "bracket"},
            {R"({"copy": "/etc"})", "copy"}}) {
-    const Result<ScanWish> wish = read(body);
-    ASSERT_FALSE(wish) << body;
-    EXPECT_EQ(wish.error().kind, ErrorKind::kUsage) << body;
-    EXPECT_EQ(wish.error().where, field) << body;
-    EXPECT_FALSE(wish.error().remedy.empty()) << body;
+    const Result<capture::ScanRequest> request = read(body);
+    ASSERT_FALSE(request) << body;
+    EXPECT_EQ(request.error().kind, ErrorKind::kUsage) << body;
+    EXPECT_EQ(request.error().where, field) << body;
+    EXPECT_FALSE(request.error().remedy.empty()) << body;
   }
 }
 
 TEST(ScanBody, ProposesTheFieldThatWasMeant) {
-  const Result<ScanWish> wish = read(R"({"fabrik": "wool"})");
-  ASSERT_FALSE(wish);
-  EXPECT_THAT(wish.error().remedy, HasSubstr("'fabric'"));
+  const Result<capture::ScanRequest> request = read(R"({"fabrik": "wool"})");
+  ASSERT_FALSE(request);
+  EXPECT_THAT(request.error().why, HasSubstr("'fabric'"));
 }
 
 TEST(ScanBody, RefusesWhatIsNoFlatJsonObject) {
@@ -144,10 +145,10 @@ TEST(ScanBody, RefusesWhatIsNoFlatJsonObject) {
   for (const std::string& body : std::vector<std::string>{
            "{", "[]", "1", "null", "{\"a\": 1} x", "{'a': 1}", "\xff", "{\"fabric\": \"\xff\"}",
            "{\"iso\": 1e999}", "{\"metadata\": " + deep + "}", deep, std::string(60000, '{')}) {
-    const Result<ScanWish> wish = read(body);
-    ASSERT_FALSE(wish) << body.substr(0, 40);
-    EXPECT_EQ(wish.error().kind, ErrorKind::kUsage);
-    EXPECT_EQ(wish.error().where, "body") << body.substr(0, 40);
+    const Result<capture::ScanRequest> request = read(body);
+    ASSERT_FALSE(request) << body.substr(0, 40);
+    EXPECT_EQ(request.error().kind, ErrorKind::kUsage);
+    EXPECT_EQ(request.error().where, "body") << body.substr(0, 40);
   }
   EXPECT_TRUE(read(""));
   EXPECT_TRUE(read(" \r\n"));

@@ -47,7 +47,7 @@ TEST(RigClient, PassesOnTheDaemonsErrors) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
   EXPECT_EQ(refused.error().where, "fabrik");
-  EXPECT_THAT(refused.error().remedy, HasSubstr("'fabric'"));
+  EXPECT_THAT(refused.error().why, HasSubstr("'fabric'"));
   EXPECT_EQ(client.get("/api/v1/sessions/none").error().kind, ErrorKind::kNoInput);
 }
 

@@ -42,8 +42,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t head_end = text.find("\r\n\r\n");
   const auto body = parse_body(head_end == std::string_view::npos ? text : text.substr(head_end + 4));
   if (!body) return line_of(error_document(body.error())).empty();
-  const auto wish = read_scan_body(*body, 10, {});
-  if (!wish) return line_of(error_document(wish.error())).empty();
-  if (wish->request.leds.size() > 10 || wish->request.fabric.size() > 200) std::abort();
-  return wish->request.metadata.dump().empty();
+  const auto request = read_scan_body(*body, 10, {});
+  if (!request) return line_of(error_document(request.error())).empty();
+  if (request->leds.size() > 10 || request->fabric.size() > 200) std::abort();
+  return request->metadata.dump().empty();
 }
