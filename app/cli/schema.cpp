@@ -14,6 +14,7 @@
 #include "app/jobs/schemas/documents_page.h"
 #include "core/fields.h"
 #include "core/files.h"
+#include "simulator/scene/scene_page.h"
 
 namespace weft::app {
 namespace {
@@ -42,12 +43,21 @@ Result<int> write_all(const fs::path& folder) {
   return kDone;
 }
 
+Result<int> print_page(const std::string& subject) {
+  if (subject == "scenes") {
+    print(simulator::scene_page());
+  } else if (subject.empty() || subject == "documents") {
+    print(documents_page());
+  } else {
+    return Error{ErrorKind::kUsage, "there is no such page", "--page",
+                 rule_of_words({"documents", "scenes"}, subject), "name one of them"};
+  }
+  return kDone;
+}
+
 Result<int> print_schemas(const SchemaArguments& a) {
   if (!a.folder.empty()) return write_all(a.folder);
-  if (a.page) {
-    print(documents_page());
-    return kDone;
-  }
+  if (a.page) return print_page(a.document);
   const std::vector<DocumentSchema>& all = document_schemas();
   if (a.document.empty()) {
     for (const DocumentSchema& each : all) print(fmt::format("{:<20} {}", each.name, each.says));
@@ -66,7 +76,9 @@ Run add_schema(Options& options) {
   const auto a = std::make_shared<SchemaArguments>();
   options.add("DOCUMENT", &a->document, "Of this document, such as weft.solve; absent: lists all");
   options.add("--output", &a->folder, "Write all of them into this folder instead");
-  options.add_flag("--page", &a->page, "Print the fields of all of them as a page of Markdown instead");
+  options.add_flag("--page", &a->page,
+                   "Print a page of Markdown instead: of the fields of all of them, or with the word scenes "
+                   "of the keys of scenes");
   return [a](const CommonArguments&) { return print_schemas(*a); };
 }
 

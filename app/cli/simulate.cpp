@@ -190,7 +190,8 @@ Result<int> simulate(const SimulateArguments& arguments, const CommonArguments& 
 
 Run add_simulate(Options& options) {
   const auto a = std::make_shared<SimulateArguments>();
-  options.add("scene", &a->scene, "Scene file; docs/scenes.md lists its keys and units").required();
+  options.add("scene", &a->scene, "Scene file; weft schema --page scenes lists its keys and units")
+      .required();
   options
       .add("-o,--output", &a->output,
            "Session folder to make, NAME.weft, which must not exist; with --led the DNG file, with "

@@ -22,7 +22,7 @@
 #include "simulator/targets/settings.h"
 
 // A scene says what is on the table, what lights it, what photographs it and which effects are simulated.
-// docs/scenes.md lists every key; millimetres and the rig frame throughout.
+// docs/reference/scenes.md lists every key; millimetres and the rig frame throughout.
 
 namespace weft::simulator {
 
@@ -142,31 +142,32 @@ struct TransportSettings {
   bool operator==(const TransportSettings&) const = default;
 };
 
-/// What is simulated beyond the ideal picture. An effect that a scene does not name does not run.
+/// What is simulated beyond the ideal picture; effect_keys() says what each is. An effect that a scene does
+/// not name does not run.
 struct EffectSettings {
-  bool near_light = false;       ///< direction, distance and lobe of each LED by pixel, not as at the centre
-  bool relief = false;           ///< light is evaluated at the cloth's height, not on the plane below it
-  bool finite_led = false;       ///< LEDs are spheres of led_radius_mm: soft shadows and wider highlights
-  bool led_drift = false;        ///< LEDs fade over the session and flicker
-  bool stray = false;            ///< light of the LED that the rig reflects
-  bool ambient = false;          ///< light of the room
-  bool cast_shadows = false;     ///< the cloth hides LEDs from parts of itself
-  bool interreflection = false;  ///< the cloth lights itself
-  bool translucency = false;     ///< light enters a yarn and leaves beside it
-  bool reflectance = false;      ///< the material's own reflectance, not Lambert's
-  bool spectral = false;         ///< colours are spectra seen through the camera's filters
-  bool distortion = false;       ///< of the lens
-  bool movement = false;         ///< the cloth shifts between shots
-  bool vignetting = false;       ///< the lens darkens towards the corners
-  bool field_curvature = false;  ///< blur that grows towards the corners
-  bool defocus = false;          ///< blur by a disc and by the lens's point spread
-  bool chromatic_aberration = false;  ///< red and blue look at another place than green
-  bool veil = false;                  ///< light that the lens spreads over the whole frame
-  bool bloom = false;                 ///< full photosites spill into their column
-  bool dark_current = false;          ///< photosites fill by warmth, too, and some are hot or dead
-  bool uneven_response = false;       ///< photosites and columns differ in gain and offset
-  bool nonlinearity = false;          ///< counts do not follow light in a straight line
-  bool noise = false;                 ///< photon noise and read noise
+  bool near_light = false;
+  bool relief = false;
+  bool finite_led = false;
+  bool led_drift = false;
+  bool stray = false;
+  bool ambient = false;
+  bool cast_shadows = false;
+  bool interreflection = false;
+  bool translucency = false;
+  bool reflectance = false;
+  bool spectral = false;
+  bool distortion = false;
+  bool movement = false;
+  bool vignetting = false;
+  bool field_curvature = false;
+  bool defocus = false;
+  bool chromatic_aberration = false;
+  bool veil = false;
+  bool bloom = false;
+  bool dark_current = false;
+  bool uneven_response = false;
+  bool nonlinearity = false;
+  bool noise = false;
 
   bool operator==(const EffectSettings&) const = default;
 };
@@ -175,6 +176,7 @@ struct EffectSettings {
 struct EffectKey {
   const char* name;
   bool EffectSettings::*on;
+  const char* says;  ///< what it does, by which keys, and what holds without it; in Markdown
 };
 /// All effects in the order of light.
 std::span<const EffectKey> effect_keys();

@@ -10,9 +10,6 @@
 namespace weft::simulator {
 namespace {
 
-constexpr double kAutomaticSigma = 0.25;
-constexpr Range kAutomaticRange = {1e-3, 100};
-
 /// Nothing for what is no number, and for whole numbers too large for a double to hold exactly.
 std::optional<double> number_in(const toml::node& node) {
   return node.is_number() ? node.value<double>() : std::nullopt;
@@ -49,139 +46,143 @@ std::string nearest_to(std::string_view word, const Names& names) {
 
 }  // namespace
 
-void SceneReader::number(const char* key, double& value, Range allowed) {
-  if (const toml::node* node = find(key)) {
+void SceneReader::number(const SceneKey& key, double& value, Range allowed) {
+  if (const toml::node* node = find(key.name)) {
     const std::optional<double> number = number_in(*node);
-    if (!number) refuse_type(key, "a number");
+    if (!number) refuse_type(key.name, "a number");
     value = number.value_or(value);
   }
-  check(key, value, allowed);
+  check(key.name, value, allowed);
 }
 
-void SceneReader::flag(const char* key, bool& value) {
-  const toml::node* node = find(key);
+void SceneReader::flag(const SceneKey& key, bool& value) {
+  const toml::node* node = find(key.name);
   if (node == nullptr) return;
-  if (!node->is_boolean()) refuse_type(key, "true or false");
+  if (!node->is_boolean()) refuse_type(key.name, "true or false");
   value = node->value_or(value);
 }
 
-void SceneReader::text(const char* key, std::string& value) {
-  const toml::node* node = find(key);
+void SceneReader::text(const SceneKey& key, std::string& value) {
+  const toml::node* node = find(key.name);
   if (node == nullptr) return;
-  if (!node->is_string()) refuse_type(key, "a text in quotes");
+  if (!node->is_string()) refuse_type(key.name, "a text in quotes");
   value = node->value_or(value);
 }
 
-void SceneReader::rgb(const char* key, Rgb& value, Range allowed) {
-  if (const toml::node* node = find(key)) {
+void SceneReader::rgb(const SceneKey& key, Rgb& value, Range allowed) {
+  if (const toml::node* node = find(key.name)) {
     const std::optional<std::vector<double>> numbers = numbers_in(*node);
     if (const std::optional<double> grey = number_in(*node)) {
       value.fill(*grey);
     } else if (numbers && numbers->size() == value.size()) {
       std::copy(numbers->begin(), numbers->end(), value.begin());
     } else {
-      refuse_type(key, "a number or three numbers in brackets");
+      refuse_type(key.name, "a number or three numbers in brackets");
     }
   }
-  for (const double v : value) check(key, v, allowed);
+  for (const double v : value) check(key.name, v, allowed);
 }
 
-void SceneReader::vec3(const char* key, Vec3& value, Range allowed) {
+void SceneReader::vec3(const SceneKey& key, Vec3& value, Range allowed) {
   std::array<double, 3> v = {value.x, value.y, value.z};
   numbers(key, v, allowed);
   value = {v[0], v[1], v[2]};
 }
 
-void SceneReader::numbers(const char* key, std::span<double> values, Range allowed) {
-  if (const toml::node* node = find(key)) {
+void SceneReader::numbers(const SceneKey& key, std::span<double> values, Range allowed) {
+  if (const toml::node* node = find(key.name)) {
     const std::optional<std::vector<double>> read = numbers_in(*node);
     if (!read || read->size() != values.size())
-      return refuse_type(key, fmt::format("{} numbers in brackets",
-                                          values.size() == 3 ? "three" : fmt::format("{}", values.size())));
+      return refuse_type(key.name,
+                         fmt::format("{} numbers in brackets",
+                                     values.size() == 3 ? "three" : fmt::format("{}", values.size())));
     std::copy(read->begin(), read->end(), values.begin());
   }
-  for (const double v : values) check(key, v, allowed);
+  for (const double v : values) check(key.name, v, allowed);
 }
 
-void SceneReader::numbers(const char* key, std::vector<double>& values, Range allowed) {
-  if (const toml::node* node = find(key)) {
+void SceneReader::numbers(const SceneKey& key, std::vector<double>& values, Range allowed) {
+  if (const toml::node* node = find(key.name)) {
     std::optional<std::vector<double>> read = numbers_in(*node);
-    if (!read || read->empty()) return refuse_type(key, "one or more numbers in brackets");
+    if (!read || read->empty()) return refuse_type(key.name, "one or more numbers in brackets");
     values = *std::move(read);
   }
-  for (const double v : values) check(key, v, allowed);
+  for (const double v : values) check(key.name, v, allowed);
 }
 
-void SceneReader::file(const char* key, std::string& value) {
-  if (find(key) == nullptr) return;
+void SceneReader::file(const SceneKey& key, std::string& value) {
+  if (find(key.name) == nullptr) return;
   std::string name;
   text(key, name);
-  if (name.empty()) return refuse_type(key, "the name of a file");
+  if (name.empty()) return refuse_type(key.name, "the name of a file");
   value = absolute(name);
 }
 
-void SceneReader::picture(const char* key, std::string& file_name,
+void SceneReader::picture(const SceneKey& key, std::string& file_name,
                           std::shared_ptr<const Image<float>>& image) {
   file(key, file_name);
   if (file_name.empty() || !source_->read_picture || source_->error) return;
   Result<Image<float>> read = source_->read_picture(file_name);
-  require(read, key);
+  require(read, key.name);
   if (read) image = std::make_shared<const Image<float>>(*std::move(read));
 }
 
-void SceneReader::spectrum(const char* key, Spectrum& value) {
-  if (const toml::node* node = find(key)) spectrum_in(key, *node, value);
-  check(key, value);
+void SceneReader::spectrum(const SceneKey& key, Spectrum& value) {
+  if (const toml::node* node = find(key.name)) spectrum_in(key.name, *node, value);
+  check(key.name, value);
 }
 
-void SceneReader::spectra(const char* key, std::span<Spectrum> values) {
-  if (const toml::node* node = find(key)) {
+void SceneReader::spectra(const SceneKey& key, std::span<Spectrum> values) {
+  if (const toml::node* node = find(key.name)) {
     const toml::array* array = node->as_array();
     if (array == nullptr || array->size() != values.size())
-      return refuse_type(key, fmt::format("{} spectra in brackets", values.size()));
+      return refuse_type(key.name, fmt::format("{} spectra in brackets", values.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!spectrum_in(key, (*array)[i], values[i])) return;
+      if (!spectrum_in(key.name, (*array)[i], values[i])) return;
     }
   }
-  for (const Spectrum& v : values) check(key, v);
+  for (const Spectrum& v : values) check(key.name, v);
 }
 
-void SceneReader::chart(const char* key, std::vector<Spectrum>& patches, int count) {
-  const toml::node* node = find(key);
+void SceneReader::chart(const SceneKey& key, std::vector<Spectrum>& patches, int count) {
+  const toml::node* node = find(key.name);
   if (node != nullptr && node->is_string()) {
     Result<std::vector<Spectrum>> read = read_spectra(absolute(node->value_or(std::string())), count);
-    require(read, key);
+    require(read, key.name);
     if (read) patches = *std::move(read);
   } else if (node != nullptr) {
     patches.resize(static_cast<std::size_t>(count));
     spectra(key, patches);
   }
-  for (const Spectrum& v : patches) check(key, v);
+  for (const Spectrum& v : patches) check(key.name, v);
   if (patches.empty() || patches.size() == static_cast<std::size_t>(count)) return;
-  refuse(key, fmt::format("it has {} patches, not {}", patches.size(), count), "give one spectrum a patch");
+  refuse(key.name, fmt::format("it has {} patches, not {}", patches.size(), count),
+         "give one spectrum a patch");
 }
 
-void SceneReader::automatic(const char* key, const char* to, std::optional<double>& sigma) {
-  const toml::node* effects = find(key);
-  const toml::node* accuracy = find(to);
+void SceneReader::automatic(const SceneKey& key, const SceneKey& to, std::optional<double>& sigma,
+                            Range allowed) {
+  const toml::node* effects = find(key.name);
+  const toml::node* accuracy = find(to.name);
   if (effects != nullptr && effects->is_string()) {
     if (effects->value_or(std::string()) != "auto")
-      return refuse(key, "the only text it may be is \"auto\"", "put the names of effects in brackets");
+      return refuse(key.name, "the only text it may be is \"auto\"", "put the names of effects in brackets");
     sigma = kAutomaticSigma;
   }
   if (accuracy != nullptr) {
     if (!sigma)
-      return refuse(to, "it says how far effects = \"auto\" may be off, and this scene names its effects",
+      return refuse(to.name,
+                    "it says how far effects = \"auto\" may be off, and this scene names its effects",
                     "remove it, or let the effects be \"auto\"");
     sigma = sigma_in(accuracy->value_or(std::string()));
-    if (!sigma) return refuse_type(to, "a number of sigma in quotes, such as \"0.25 sigma\",");
+    if (!sigma) return refuse_type(to.name, "a number of sigma in quotes, such as \"0.25 sigma\",");
   }
-  if (sigma) check(to, *sigma, kAutomaticRange);
+  if (sigma) check(to.name, *sigma, allowed);
 }
 
-void SceneReader::flags(const char* key, EffectSettings& effects) {
+void SceneReader::flags(const char* key, const char* says, EffectSettings& effects) {
   const toml::node* node = find(key);
-  if (node == nullptr || node->is_table()) return section(key, effects);
+  if (node == nullptr || node->is_table()) return section(key, says, effects);
   const toml::array* names = node->as_array();
   if (names == nullptr || (!names->empty() && !names->is_homogeneous(toml::node_type::string)))
     return refuse_type(key, "a section [effects], a list of names or \"auto\"");
@@ -193,7 +194,7 @@ void SceneReader::flags(const char* key, EffectSettings& effects) {
     if (named == known.end()) {
       return refuse(key,
                     fmt::format("\"{}\" is no effect; the nearest is \"{}\"", name, nearest_to(name, known)),
-                    "correct or remove it; docs/scenes.md lists the effects");
+                    "correct or remove it; docs/reference/scenes.md lists the effects");
     }
     effects.*effect_keys()[static_cast<std::size_t>(named - known.begin())].on = true;
   }
@@ -212,7 +213,7 @@ void SceneReader::refuse_unknown_keys() {
                      : fmt::format("the nearest key here is \"{}\"", nearest_to(unknown->str(), known_));
   fail({ErrorKind::kBadData, fmt::format("unknown key \"{}{}\"", path_, unknown->str()),
         fmt::format("{}:{}", source_->where, unknown->source().begin.line), why,
-        "correct or remove it; docs/scenes.md lists the keys of each kind of scene"});
+        "correct or remove it; docs/reference/scenes.md lists the keys of each kind of scene"});
 }
 
 const toml::node* SceneReader::find(const char* key) {

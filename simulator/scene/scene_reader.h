@@ -22,16 +22,12 @@
 #include "core/result.h"
 #include "core/vec.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/scene_key.h"
 #include "simulator/spectra/spectrum.h"
-#include "simulator/targets/range.h"
 
 // Reads and checks scenes, one table at a time. Internal to simulator/scene.
 
 namespace weft::simulator {
-
-/// The values of a key that is a choice, as a scene spells them.
-template <typename Value>
-using Names = std::vector<std::pair<const char*, Value>>;
 
 /// Reads a picture that a scene names. Without one, scenes keep the names of their pictures alone.
 using ReadPicture = std::function<Result<Image<float>>(const std::filesystem::path&)>;
@@ -54,69 +50,75 @@ class SceneReader {
   SceneReader(const toml::table* table, std::string path, SceneSource& source)
       : table_(table), path_(std::move(path)), source_(&source) {}
 
-  void number(const char* key, double& value, Range allowed);
+  void number(const SceneKey& key, double& value, Range allowed);
   template <typename Integer>
-  void integer(const char* key, Integer& value, std::int64_t least, std::int64_t most);
-  void flag(const char* key, bool& value);
-  void text(const char* key, std::string& value);
+  void integer(const SceneKey& key, Integer& value, std::int64_t least, std::int64_t most);
+  void flag(const SceneKey& key, bool& value);
+  void text(const SceneKey& key, std::string& value);
   template <typename Value>
-  void choice(const char* key, Value& value, const std::type_identity_t<Names<Value>>& names);
+  void choice(const SceneKey& key, Value& value, const std::type_identity_t<Names<Value>>& names);
+  /// A choice on which it depends what other keys there are.
+  template <typename Value>
+  void kind(const SceneKey& key, Value& value, const std::type_identity_t<Names<Value>>& names) {
+    choice(key, value, names);
+  }
   /// A colour: three numbers, or one for grey.
-  void rgb(const char* key, Rgb& value, Range allowed);
-  void vec3(const char* key, Vec3& value, Range allowed);
+  void rgb(const SceneKey& key, Rgb& value, Range allowed);
+  void vec3(const SceneKey& key, Vec3& value, Range allowed);
   /// As many numbers as there are, in brackets.
-  void numbers(const char* key, std::span<double> values, Range allowed);
+  void numbers(const SceneKey& key, std::span<double> values, Range allowed);
   /// One or more numbers in brackets.
-  void numbers(const char* key, std::vector<double>& values, Range allowed);
+  void numbers(const SceneKey& key, std::vector<double>& values, Range allowed);
   /// The name of a file, made absolute.
-  void file(const char* key, std::string& value);
-  void picture(const char* key, std::string& file_name, std::shared_ptr<const Image<float>>& image);
+  void file(const SceneKey& key, std::string& value);
+  void picture(const SceneKey& key, std::string& file_name, std::shared_ptr<const Image<float>>& image);
   /// The name of a table of 36 lines, or 36 numbers in brackets.
-  void spectrum(const char* key, Spectrum& value);
+  void spectrum(const SceneKey& key, Spectrum& value);
   /// As many spectra as there are, in brackets.
-  void spectra(const char* key, std::span<Spectrum> values);
+  void spectra(const SceneKey& key, std::span<Spectrum> values);
   /// The name of a folder, or a list of spectra.
-  void chart(const char* key, std::vector<Spectrum>& patches, int count);
+  void chart(const SceneKey& key, std::vector<Spectrum>& patches, int count);
 
-  void integer(const char* key, std::optional<int>& value, std::int64_t least, std::int64_t most) {
-    optional(key, value, [&](int& v) { integer(key, v, least, most); });
+  void integer(const SceneKey& key, std::optional<int>& value, std::int64_t least, std::int64_t most) {
+    optional(key.name, value, [&](int& v) { integer(key, v, least, most); });
   }
-  void number(const char* key, std::optional<double>& value, Range allowed) {
-    optional(key, value, [&](double& v) { number(key, v, allowed); });
+  void number(const SceneKey& key, std::optional<double>& value, Range allowed) {
+    optional(key.name, value, [&](double& v) { number(key, v, allowed); });
   }
-  void rgb(const char* key, std::optional<Rgb>& value, Range allowed) {
-    optional(key, value, [&](Rgb& v) { rgb(key, v, allowed); });
+  void rgb(const SceneKey& key, std::optional<Rgb>& value, Range allowed) {
+    optional(key.name, value, [&](Rgb& v) { rgb(key, v, allowed); });
   }
-  void vec3(const char* key, std::optional<Vec3>& value, Range allowed) {
-    optional(key, value, [&](Vec3& v) { vec3(key, v, allowed); });
+  void vec3(const SceneKey& key, std::optional<Vec3>& value, Range allowed) {
+    optional(key.name, value, [&](Vec3& v) { vec3(key, v, allowed); });
   }
-  void spectrum(const char* key, std::optional<Spectrum>& value) {
-    optional(key, value, [&](Spectrum& v) { spectrum(key, v); });
+  void spectrum(const SceneKey& key, std::optional<Spectrum>& value) {
+    optional(key.name, value, [&](Spectrum& v) { spectrum(key, v); });
   }
-  void text(const char* key, std::optional<std::string>& value) {
-    optional(key, value, [&](std::string& v) { text(key, v); });
+  void text(const SceneKey& key, std::optional<std::string>& value) {
+    optional(key.name, value, [&](std::string& v) { text(key, v); });
   }
-  void file(const char* key, std::optional<std::string>& value) {
-    optional(key, value, [&](std::string& v) { file(key, v); });
+  void file(const SceneKey& key, std::optional<std::string>& value) {
+    optional(key.name, value, [&](std::string& v) { file(key, v); });
   }
   template <typename Value>
-  void choice(const char* key, std::optional<Value>& value, const std::type_identity_t<Names<Value>>& names) {
-    optional(key, value, [&](Value& v) { choice(key, v, names); });
+  void choice(const SceneKey& key, std::optional<Value>& value,
+              const std::type_identity_t<Names<Value>>& names) {
+    optional(key.name, value, [&](Value& v) { choice(key, v, names); });
   }
 
   template <typename Settings>
-  void section(const char* key, Settings& settings);
+  void section(const char* key, const char* says, Settings& settings);
   template <typename Settings>
-  void optional_section(const char* key, Settings& settings) {
-    section(key, settings);
+  void optional_section(const char* key, const char* says, Settings& settings) {
+    section(key, says, settings);
   }
   /// The tables of the file follow those that are there.
   template <typename Settings>
-  void list(const char* key, std::vector<Settings>& settings);
+  void list(const char* key, const char* says, std::vector<Settings>& settings);
   /// `effects = "auto"` with its `to`.
-  void automatic(const char* key, const char* to, std::optional<double>& sigma);
+  void automatic(const SceneKey& key, const SceneKey& to, std::optional<double>& sigma, Range allowed);
   /// A section of flags, or the names of those that are true.
-  void flags(const char* key, EffectSettings& effects);
+  void flags(const char* key, const char* says, EffectSettings& effects);
 
   void require(bool holds, const char* key, const std::string& rule) {
     if (!holds) refuse(key, rule, "change it");
@@ -163,24 +165,24 @@ class SceneReader {
 };
 
 template <typename Integer>
-void SceneReader::integer(const char* key, Integer& value, std::int64_t least, std::int64_t most) {
+void SceneReader::integer(const SceneKey& key, Integer& value, std::int64_t least, std::int64_t most) {
   std::int64_t number = value;
-  if (const toml::node* node = find(key)) {
+  if (const toml::node* node = find(key.name)) {
     const std::optional<std::int64_t> integer = node->value_exact<std::int64_t>();
-    if (!integer) refuse_type(key, "a whole number");
+    if (!integer) refuse_type(key.name, "a whole number");
     number = integer.value_or(number);
   }
   if (number < least || number > most) {
-    refuse(key, fmt::format("{} is not between {} and {}", number, least, most), kRemedy);
+    refuse(key.name, fmt::format("{} is not between {} and {}", number, least, most), kRemedy);
   } else {
     value = static_cast<Integer>(number);
   }
 }
 
 template <typename Value>
-void SceneReader::choice(const char* key, Value& value, const std::type_identity_t<Names<Value>>& names) {
+void SceneReader::choice(const SceneKey& key, Value& value, const std::type_identity_t<Names<Value>>& names) {
   std::string name;
-  if (find(key) == nullptr) return;
+  if (find(key.name) == nullptr) return;
   text(key, name);
   const auto named = std::find_if(names.begin(), names.end(), [&](const auto& n) { return name == n.first; });
   if (named != names.end()) {
@@ -189,11 +191,11 @@ void SceneReader::choice(const char* key, Value& value, const std::type_identity
   }
   std::string known;
   for (const auto& n : names) known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", n.first);
-  refuse(key, fmt::format("\"{}\" is not one of {}", name, known), "choose one of them");
+  refuse(key.name, fmt::format("\"{}\" is not one of {}", name, known), "choose one of them");
 }
 
 template <typename Settings>
-void SceneReader::section(const char* key, Settings& settings) {
+void SceneReader::section(const char* key, const char* /*says*/, Settings& settings) {
   const toml::node* node = find(key);
   const toml::table* table = node == nullptr ? nullptr : node->as_table();
   if (node != nullptr && table == nullptr) refuse_type(key, fmt::format("a section [{}{}]", path_, key));
@@ -201,7 +203,7 @@ void SceneReader::section(const char* key, Settings& settings) {
 }
 
 template <typename Settings>
-void SceneReader::list(const char* key, std::vector<Settings>& settings) {
+void SceneReader::list(const char* key, const char* /*says*/, std::vector<Settings>& settings) {
   for (std::size_t i = 0; i < settings.size(); ++i) read_table(nullptr, numbered(key, i), settings[i]);
   const toml::node* node = find(key);
   if (node == nullptr) return;

@@ -18,7 +18,7 @@
 #include "core/result.h"
 #include "core/vec.h"
 #include "simulator/scene/scene.h"
-#include "simulator/scene/scene_reader.h"
+#include "simulator/scene/scene_key.h"
 
 // Writes scenes. Internal to simulator/scene.
 
@@ -31,75 +31,80 @@ class SceneWriter {
   std::string text() && { return std::move(text_); }
 
   template <typename Value>
-  void number(const char* key, const Value& value, Range) {
-    put(key, value);
+  void number(const SceneKey& key, const Value& value, Range) {
+    put(key.name, value);
   }
   template <typename Value>
-  void integer(const char* key, const Value& value, std::int64_t, std::int64_t) {
-    put(key, value);
+  void integer(const SceneKey& key, const Value& value, std::int64_t, std::int64_t) {
+    put(key.name, value);
   }
   template <typename Value>
-  void rgb(const char* key, const Value& value, Range) {
-    put(key, value);
+  void rgb(const SceneKey& key, const Value& value, Range) {
+    put(key.name, value);
   }
   template <typename Value>
-  void vec3(const char* key, const Value& value, Range) {
-    put(key, value);
+  void vec3(const SceneKey& key, const Value& value, Range) {
+    put(key.name, value);
   }
   template <typename Values>
-  void numbers(const char* key, const Values& values, Range) {
-    put(key, values);
+  void numbers(const SceneKey& key, const Values& values, Range) {
+    put(key.name, values);
   }
   template <typename Value>
-  void spectrum(const char* key, const Value& value) {
-    put(key, value);
+  void spectrum(const SceneKey& key, const Value& value) {
+    put(key.name, value);
   }
-  void spectra(const char* key, std::span<const Spectrum> values) { put(key, values); }
-  void chart(const char* key, const std::vector<Spectrum>& patches, int) {
-    if (!patches.empty()) put(key, patches);
-  }
-  template <typename Value>
-  void text(const char* key, const Value& value) {
-    put(key, value);
+  void spectra(const SceneKey& key, std::span<const Spectrum> values) { put(key.name, values); }
+  void chart(const SceneKey& key, const std::vector<Spectrum>& patches, int) {
+    if (!patches.empty()) put(key.name, patches);
   }
   template <typename Value>
-  void file(const char* key, const Value& value) {
-    put(key, value);
+  void text(const SceneKey& key, const Value& value) {
+    put(key.name, value);
   }
-  void picture(const char* key, const std::string& file_name, const std::shared_ptr<const Image<float>>&) {
-    if (!file_name.empty()) put(key, file_name);
-  }
-  void flag(const char* key, bool value) { put(key, value); }
   template <typename Value>
-  void choice(const char* key, const Value& value, const std::type_identity_t<Names<Value>>& names) {
+  void file(const SceneKey& key, const Value& value) {
+    put(key.name, value);
+  }
+  void picture(const SceneKey& key, const std::string& file_name,
+               const std::shared_ptr<const Image<float>>&) {
+    if (!file_name.empty()) put(key.name, file_name);
+  }
+  void flag(const SceneKey& key, bool value) { put(key.name, value); }
+  template <typename Value>
+  void choice(const SceneKey& key, const Value& value, const std::type_identity_t<Names<Value>>& names) {
     const auto named =
         std::find_if(names.begin(), names.end(), [&](const auto& n) { return value == n.second; });
-    put(key, std::string(named->first));
+    put(key.name, std::string(named->first));
   }
   template <typename Value>
-  void choice(const char* key, const std::optional<Value>& value,
+  void choice(const SceneKey& key, const std::optional<Value>& value,
               const std::type_identity_t<Names<Value>>& names) {
     if (value) choice(key, *value, names);
   }
+  template <typename Value>
+  void kind(const SceneKey& key, const Value& value, const std::type_identity_t<Names<Value>>& names) {
+    choice(key, value, names);
+  }
   template <typename Settings>
-  void section(const char* key, Settings& settings) {
+  void section(const char* key, const char*, Settings& settings) {
     append(fmt::format("\n[{}{}]\n", path_, key), key, settings);
   }
   /// Nothing where all is as by default.
   template <typename Settings>
-  void optional_section(const char* key, Settings& settings) {
-    if (!(settings == Settings())) section(key, settings);
+  void optional_section(const char* key, const char* says, Settings& settings) {
+    if (!(settings == Settings())) section(key, says, settings);
   }
   template <typename Settings>
-  void list(const char* key, std::vector<Settings>& settings) {
+  void list(const char* key, const char*, std::vector<Settings>& settings) {
     for (Settings& each : settings) append(fmt::format("\n[[{}{}]]\n", path_, key), key, each);
   }
-  void automatic(const char* key, const char* to, const std::optional<double>& sigma) {
+  void automatic(const SceneKey& key, const SceneKey& to, const std::optional<double>& sigma, Range) {
     if (!sigma) return;
-    put(key, std::string("auto"));
-    put(to, fmt::format("{} sigma", *sigma));
+    put(key.name, std::string("auto"));
+    put(to.name, fmt::format("{} sigma", *sigma));
   }
-  void flags(const char* key, EffectSettings& effects) { section(key, effects); }
+  void flags(const char* key, const char* says, EffectSettings& effects) { section(key, says, effects); }
   void require(bool, const char*, const char*) {}
   template <typename Value>
   void require(const Result<Value>&, const char*) {}

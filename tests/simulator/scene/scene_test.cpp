@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/scene/scene.h"
 
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -166,20 +164,6 @@ TEST(Scene, ThatIsNotTomlIsRefusedWithItsLine) {
   EXPECT_THAT(refusal("seed = 1\nseed = 2\n"), HasSubstr("scene.toml:2"));
   EXPECT_THAT(refusal(std::string("fabric = \"\xff\"\n")), HasSubstr("not TOML"));
   EXPECT_THAT(refusal(std::string(100000, '[')), HasSubstr("not TOML"));
-}
-
-TEST(Scene, HasEachOfItsKeysInTheDocumentation) {
-  std::ifstream in(kSource / "docs" / "scenes.md");
-  const std::string page((std::istreambuf_iterator<char>(in)), {});
-  std::set<std::string> keys = {"effects", "to", "family", "preset", "rig"};  // read, and written as others
-  for (std::size_t i = 0; i < kKinds.size(); ++i) {
-    for (const std::string& line : lines_of(everything(i))) {
-      const std::size_t equals = line.find(" = "), key = line.rfind(' ', equals - 1) + 1;
-      keys.insert(line.substr(key, equals - key));
-    }
-  }
-  EXPECT_GT(keys.size(), 150U);
-  for (const std::string& key : keys) EXPECT_NE(page.find("`" + key + "`"), page.npos) << key;
 }
 
 }  // namespace

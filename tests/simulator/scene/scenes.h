@@ -159,6 +159,8 @@ inline Scene everything(std::size_t number) {
   s.spectra.filters = {rising_spectrum(0.1), rising_spectrum(0.2), rising_spectrum(0.3)};
   for (int i = 0; i < 24; ++i) s.spectra.chart.push_back(rising_spectrum(0.01 * i));
   s.transport = {8, 32, 3};
+  s.films = {FilmStates::kBoth, 0.02, 0.8};
+  s.pose = {10, 20};
   const SheetSettings sheet = {1, 70, 2, 3, 0.2, 0.25};
   s.targets = {{PaperSettings{100, 50}, {1, 2, 3}, 10, 20, 30, 0.8, 0.05, sheet},
                {CheckerboardSettings{9, 6, 10, 5}, {4, 5, 6}, 11, 21, 31, 0.81, 0.051, sheet},
