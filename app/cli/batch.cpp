@@ -20,7 +20,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/library_place.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/jobs/batch/farm.h"
 #include "app/jobs/batch/lean.h"
 #include "app/jobs/batch/merge_batch.h"

@@ -11,7 +11,7 @@
 
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "core/files.h"
 
 namespace weft::app {

@@ -12,7 +12,7 @@
 #include "app/cli/rig_options.h"
 #include "app/cli/set_capture.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/jobs/sets/photograph_set.h"
 #include "app/server/rig/rig_lock.h"
 

@@ -14,7 +14,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/jobs/batch/solve_change.h"
 #include "core/field_json.h"
 

@@ -5,7 +5,7 @@
 #include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/jobs/copy_request.h"
 #include "capture/scan/second_copy.h"
 

@@ -7,7 +7,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/jobs/compare.h"
 #include "app/jobs/solve.h"
 #include "core/files.h"

@@ -11,7 +11,7 @@
 #include "app/cli/rig_options.h"
 #include "app/cli/rig_owner.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/server/rig/rig_lock.h"
 #include "capture/rig.h"
 #include "capture/rig_devices/rig_devices.h"

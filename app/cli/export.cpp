@@ -13,7 +13,7 @@
 #include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/jobs/export/export_json.h"
 #include "app/jobs/export/export_request.h"
 #include "app/jobs/export/preset_files.h"

@@ -13,7 +13,7 @@
 #include "app/cli/opened_devices.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/server/api/requests.h"
 #include "core/error_json.h"
 #include "core/exposure_words.h"

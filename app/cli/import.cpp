@@ -12,7 +12,7 @@
 #include "app/cli/options.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "core/files.h"
 
 namespace weft::app {

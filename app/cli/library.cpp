@@ -11,7 +11,7 @@
 #include "app/cli/library_place.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "core/files.h"
 #include "core/session.h"
 #include "library/catalogue.h"

@@ -6,8 +6,8 @@
 
 #include "app/cli/command_line.h"
 #include "app/cli/commit.h"
-#include "app/cli/light_verbs.h"
 #include "app/cli/verb_lines.h"
+#include "app/cli/verbs.h"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/jobs/maps/maps_request.h"
 #include "app/jobs/maps/price.h"
 #include "app/jobs/maps/session_sets.h"

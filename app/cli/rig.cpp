@@ -19,7 +19,7 @@
 #include "app/cli/rig_owner.h"
 #include "app/cli/rig_plan.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/server/api/requests.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/rig/rig_lock.h"

@@ -15,7 +15,7 @@
 #include "app/cli/rig_options.h"
 #include "app/cli/rig_owner.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/jobs/solve.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/http/error_json.h"

@@ -9,7 +9,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/jobs/schemas/document_schemas.h"
 #include "app/jobs/schemas/documents_page.h"
 #include "core/fields.h"

@@ -12,7 +12,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/server/api/api.h"
 #include "app/server/http/client.h"
 #include "app/server/rig/rig_lock.h"

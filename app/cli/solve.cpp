@@ -12,7 +12,7 @@
 #include "app/cli/explain.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
-#include "app/cli/verbs.h"
+#include "app/cli/verb.h"
 #include "app/jobs/last_check.h"
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/reflectance.h"

@@ -5,33 +5,15 @@
 
 #include "app/cli/verb.h"
 
+// Written from the lists of verbs in CMakeLists.txt.
+
 namespace weft::app {
 
-/// The verbs of weft, in the order of its help.
-std::vector<Verb> verbs();
+/// The verbs of weft-work, in the order of the help.
+std::vector<Verb> work_verbs();
 
-// A file each.
-Verb simulate_verb();
-Verb solve_verb();
-Verb compare_verb();
-Verb calibrate_verb();
-Verb rectify_verb();
-Verb schema_verb();
-Verb finish_verb();
-Verb maps_verb();
-Verb material_verb();
-Verb export_verb();
-Verb serve_verb();
-Verb scan_verb();
-Verb rig_verb();
-Verb focus_verb();
-Verb capture_verb();
-Verb doctor_verb();
-Verb copy_verb();
-Verb library_verb();
-Verb import_verb();
-Verb batch_verb();
-Verb demo_verb();
-Verb torture_verb();
+/// Those that run in `weft` itself, since they load neither OpenCV nor readers of images. A verb of verbs may
+/// be here with some of them empty (a name and a help alone): weft-work runs those.
+std::vector<Verb> light_verbs();
 
 }  // namespace weft::app
