@@ -79,8 +79,8 @@ void JsonReader::take(const Field& field, Value value) {
       [&]<typename T>(T* each) {
         using Read = typename Inner<T>::Type;
         if constexpr (std::is_same_v<T, Json>) {
-          require(fields_.has(field.name), field.name, "is missing");
-          if (fields_.has(field.name)) *each = object_.at(field.name);
+          const Json& read = each->is_array() ? fields_.list(field.name) : fields_.object(field.name);
+          if (fields_.status()) *each = read;
         } else if constexpr (kIsList<T>) {
           const Json list = list_of(field);
           T read;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "app/jobs/sets/photograph_set.h"
 #include "batch/outcome.h"
 #include "batch/plan.h"
 #include "core/calibration.h"
@@ -30,6 +31,7 @@ const std::vector<DocumentSchema>& document_schemas() {
       {"weft.response", "response.json of a calibration", fields_of<Response>},
       {"weft.color", "color.json of a calibration", fields_of<ColorTransform>},
       {"weft.lights", "lights.json of a calibration", fields_of<LightsPart>},
+      {"weft.set", "set.json: photographs for a step of a calibration", fields_of<PhotographSet>},
       {"weft.solve", "solve.json: what a solve was made of and says of itself", fields_of<SolveFacts>},
       {"weft.batch", "The first line of a plan", fields_of<batch::Header>},
       {"weft.batch-session", "A line of a plan: a session that is solved", fields_of<batch::Job>, false},

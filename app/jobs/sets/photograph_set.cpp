@@ -2,15 +2,15 @@
 #include "app/jobs/sets/photograph_set.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
 
 #include "app/jobs/calibrate/sheet_files.h"
 #include "core/calibration.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/iso_time.h"
 
@@ -20,14 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSetFile = "set.json";
-constexpr std::array<std::pair<SetPart, const char*>, 7> kParts = {{{SetPart::kBoard, "board"},
-                                                                    {SetPart::kResponse, "response"},
-                                                                    {SetPart::kTrap, "trap"},
-                                                                    {SetPart::kSheet, "sheet"},
-                                                                    {SetPart::kChart, "chart"},
-                                                                    {SetPart::kCheck, "check"},
-                                                                    {SetPart::kMoved, "moved"}}};
-
 /// The file that a part's thing is described in; null where there is nothing to say of it.
 const char* description_of(SetPart part) {
   switch (part) {
@@ -89,20 +81,29 @@ Result<PhotographSet> taken_up(const SetRequest& request) {
 }  // namespace
 
 const char* name_of(SetPart part) {
-  return kParts[static_cast<std::size_t>(part)].second;
+  return kSetPartNames[static_cast<std::size_t>(part)];
 }
 
 std::optional<SetPart> set_part_of(const std::string& name) {
-  for (const auto& [part, its] : kParts) {
-    if (name == its) return part;
-  }
-  return std::nullopt;
+  const auto found = std::ranges::find(kSetPartNames, name);
+  if (found == kSetPartNames.end()) return std::nullopt;
+  return static_cast<SetPart>(found - kSetPartNames.begin());
 }
 
-std::vector<std::string> set_part_names() {
-  std::vector<std::string> names;
-  for (const auto& [part, name] : kParts) names.emplace_back(name);
-  return names;
+void describe(Fields& fields, PhotographSet& s) {
+  fields.keep(s.document);
+  fields.choice({"part", "The step of a calibration that they are for", {}, kMustSay}, s.part, kSetPartNames);
+  fields.value({"rig", "Whose they are", {}, kMustSay}, s.rig);
+  fields.value({"created", "When it was begun, ISO 8601", {}, kMustSay}, s.created);
+  fields.value({"from", "Folder of the calibration that was known before; empty: none", {}, kMustSay},
+               s.from);
+  fields.value(
+      {"exposure_us", "Of its photographs, microseconds; 0: not metered yet", kNotNegative, kMustSay},
+      s.exposure_us);
+  fields.value(
+      {"asked", "By photograph: the pose that a person was asked for (mm, degrees, pixels), or null"},
+      s.asked);
+  fields.value({"why", "By session that weft left out: why"}, s.why);
 }
 
 std::string newest_description(const fs::path& sets, SetPart part) {
@@ -149,37 +150,15 @@ Result<PhotographSet> read_set(const fs::path& folder) {
   const fs::path file = folder / kSetFile;
   const Result<Json> document = read_json(file, "weft.set", 1);
   if (!document) return document.error();
-  JsonFields fields(*document, file.string());
-  PhotographSet set;
-  set.folder = absolute_folder(folder);
-  const std::string part = fields.text("part");
-  set.rig = fields.text("rig");
-  set.created = fields.text("created");
-  set.from = fields.text("from");
-  set.exposure_us = fields.number("exposure_us");
-  if (Result<void> ok = fields.status(); !ok) return ok.error();
-  const std::optional<SetPart> known = set_part_of(part);
-  const Json asked = document->value("asked", Json::object());
-  if (!known || !asked.is_object()) {
-    return Error{ErrorKind::kBadData, "set.json cannot be used", file.string(),
-                 known ? "asked is no object" : fmt::format("there are no sets of part {}", part),
-                 "take its photographs into a new set"};
-  }
-  set.part = *known;
-  set.asked = asked;
-  set.why = document->value("why", Json::object());
+  Result<PhotographSet> set = read_fields<PhotographSet>(*document, file.string());
+  if (set) set->folder = absolute_folder(folder);
   return set;
 }
 
 Result<void> write_set(const PhotographSet& set) {
-  return write_json(set.folder / kSetFile, {{"schema", "weft.set/1"},
-                                            {"part", name_of(set.part)},
-                                            {"rig", set.rig},
-                                            {"created", set.created},
-                                            {"from", set.from.string()},
-                                            {"exposure_us", set.exposure_us},
-                                            {"asked", set.asked},
-                                            {"why", set.why}});
+  Json document = {{"schema", "weft.set/1"}};
+  write_fields(document, set);
+  return write_json(set.folder / kSetFile, document);
 }
 
 Result<void> leave_out(const PhotographSet& set, const std::string& name, bool out) {

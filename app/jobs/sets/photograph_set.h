@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/jobs/calibrate/board_photographs.h"
+#include "core/fields.h"
 #include "core/json_document.h"
 #include "core/result.h"
 
@@ -16,9 +18,10 @@ namespace weft::app {
 
 /// What a set is of: the folders of docs/calibration.md.
 enum class SetPart { kBoard, kResponse, kTrap, kSheet, kChart, kCheck, kMoved };
+inline constexpr std::array<const char*, 7> kSetPartNames = {"board", "response", "trap", "sheet",
+                                                             "chart", "check",    "moved"};
 const char* name_of(SetPart part);  ///< "board"
 std::optional<SetPart> set_part_of(const std::string& name);
-std::vector<std::string> set_part_names();
 
 /// A set as set.json in its folder has it (weft.set/1). The folder is what counts: a photograph that lies
 /// there is of the set, whether set.json came to know of it or not.
@@ -31,6 +34,7 @@ struct PhotographSet {
   double exposure_us = 0;       ///< of its photographs; 0: not metered yet
   Json asked = Json::object();  ///< by photograph: the pose that a person was asked for
   Json why = Json::object();    ///< by session that weft left out: why
+  Json document;                ///< set.json as it was read, so that fields of newer versions survive
 
   /// What people write about the board or the sheet, beside the photographs.
   std::filesystem::path board_file() const { return folder / "board.toml"; }
@@ -41,6 +45,8 @@ struct PhotographSet {
     return part == SetPart::kSheet || part == SetPart::kCheck || part == SetPart::kMoved;
   }
 };
+
+void describe(Fields& fields, PhotographSet& set);
 
 /// What a set is begun with.
 struct SetRequest {

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Documents of testdata by what describes them: read and written again they are the same, and what they lack
+// or have of another kind is refused by its name.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/jobs/sets/photograph_set.h"
+#include "core/field_json.h"
+#include "core/files.h"
+#include "tests/core/places.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename Described>
+Result<Json> read_and_written(const Json& document) {
+  Result<Described> read = read_fields<Described>(document, "here");
+  if (!read) return std::move(read).error();
+  Json written = {{"schema", document["schema"]}};
+  write_fields(written, std::move(*read));
+  return written;
+}
+
+struct Described {
+  const char* schema;
+  Result<Json> (*again)(const Json& document);
+  Json (*fields)(SchemaOf documents);
+};
+
+template <typename T>
+Described described(const char* schema) {
+  return {schema, read_and_written<T>, schema_of<T>};
+}
+
+const std::vector<Described>& all_described() {
+  static const std::vector<Described> all = {described<PhotographSet>("weft.set")};
+  return all;
+}
+
+std::vector<Json> stored(const std::string& schema) {
+  std::vector<Json> found;
+  for (const char* folder : {"testdata/schemas", "testdata/golden"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(source_folder() / folder)) {
+      if (entry.path().extension() != ".json") continue;
+      const Result<std::string> text = read_text(entry.path());
+      if (!text) continue;
+      const Json document = Json::parse(*text);
+      if (document.value("schema", "").starts_with(schema + "/")) found.push_back(document);
+    }
+  }
+  return found;
+}
+
+TEST(DescribedDocuments, AreWrittenAsTheyWereRead) {
+  for (const Described& each : all_described()) {
+    const std::vector<Json> documents = stored(each.schema);
+    EXPECT_FALSE(documents.empty()) << each.schema;
+    for (const Json& document : documents) {
+      const Result<Json> again = each.again(document);
+      ASSERT_TRUE(again) << each.schema << ": " << again.error().message();
+      EXPECT_EQ(again->dump(1), document.dump(1));
+    }
+  }
+}
+
+TEST(DescribedDocuments, AreRefusedByTheNameOfAField) {
+  for (const Described& each : all_described()) {
+    const Json schema = each.fields(SchemaOf::kRead);
+    for (const Json& document : stored(each.schema)) {
+      for (const Json& field : schema.value("required", Json::array())) {
+        Json lacks = document;
+        lacks.erase(field.get<std::string>());
+        const Result<Json> read = each.again(lacks);
+        ASSERT_FALSE(read) << each.schema << " without " << field;
+        EXPECT_THAT(read.error().message(), testing::HasSubstr(field.dump() + " is missing"));
+      }
+      for (const auto& [name, value] : document.items()) {
+        if (name == "schema" || !schema["properties"].contains(name)) continue;
+        Json other = document;
+        other[name] = value.is_string() ? Json(7) : Json("seven");
+        const Result<Json> read = each.again(other);
+        ASSERT_FALSE(read) << each.schema << ": " << name;
+        EXPECT_THAT(read.error().message(), testing::HasSubstr(name));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft::app
