@@ -27,6 +27,12 @@ T read_one(JsonFields& fields, const char* name) {
     return fields.text(name);
 }
 
+// One of a list of which one will do is written alone.
+Json alone(const Field& field, Json value) {
+  const bool is_alone = field.fewest == 1 && value.is_array() && value.size() == 1;
+  return is_alone ? Json(value.front()) : value;
+}
+
 constexpr double kMostCount = 9007199254740992;  // 2^53: what a double holds
 
 bool is_row(const Json& row, int columns) {
@@ -193,7 +199,8 @@ void JsonWriter::take(const Field& field, Value value) {
           for (const std::filesystem::path& path : *each) paths.push_back(path.string());
           write(field, field.need == kUnlessEmpty && each->empty(), std::move(paths));
         } else {
-          write(field, field.need == kUnlessEmpty && *each == T(), *each);
+          const bool is_none = kIsList<T> && field.need == kOrNull && *each == T();
+          write(field, field.need == kUnlessEmpty && *each == T(), is_none ? Json() : alone(field, *each));
         }
       },
       value);
@@ -288,7 +295,11 @@ void JsonSchema::need_one(const std::vector<const char*>& fields) {
 
 void JsonSchema::add(const Field& field, Json schema, bool may_be_none) {
   if (!field.says.empty()) schema["description"] = field.says;
-  if (field.need == kOrNull && schema.contains("type")) schema["type"] = {schema["type"], "null"};
+  if (field.need == kOrNull && schema.contains("type")) {
+    Json types = Json::array({schema["type"], "null"});
+    if (field.fewest == 1 && schema.contains("items")) types.insert(types.begin(), schema["items"]["type"]);
+    schema["type"] = std::move(types);
+  }
   const bool is_written = field.need == kOrNull || (field.need == kMaySay && !may_be_none);
   if (field.need == kMustSay || (is_written && documents_ == SchemaOf::kWritten))
     needed_.push_back(field.name);

@@ -281,10 +281,8 @@ Result<ChoosableSolve> solve_for_maps(const SessionSolves& solves, const std::st
   return *solve;
 }
 
-Json json_of_source(const ChoosableSolve& solve, const std::vector<std::string>& stale) {
-  Json json = {{"level", solve.level}, {"draft", solve.is_preview()}};
-  if (!stale.empty()) json["stale"] = stale;
-  return json;
+SourceFacts source_of(const ChoosableSolve& solve, std::vector<std::string> stale) {
+  return {solve.id, solve.level, solve.is_preview(), std::move(stale)};
 }
 
 }  // namespace weft::library

@@ -64,7 +64,13 @@ std::vector<std::string> why_stale(const SessionSolves& solves, const std::strin
 /// of today's photographs; a preview is refused unless `draft` asks for it (kNoInput, kUsage of a named one).
 Result<ChoosableSolve> solve_for_maps(const SessionSolves& solves, const std::string& id, bool draft);
 
-/// What a product says of its solve: {"level", "draft", "stale"}, the last of sentences, if there are any.
-Json json_of_source(const ChoosableSolve& solve, const std::vector<std::string>& stale);
+/// What a product says of the solve that it was made of.
+struct SourceFacts {
+  std::string solve = {};               ///< its id
+  std::string level = {};               ///< or the method of comparison; empty: nobody knows
+  bool is_draft = false;                ///< it is a preview
+  std::vector<std::string> stale = {};  ///< why another would have been made then, a sentence each
+};
+SourceFacts source_of(const ChoosableSolve& solve, std::vector<std::string> stale);
 
 }  // namespace weft::library

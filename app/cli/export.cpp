@@ -44,52 +44,44 @@ Result<int> show_preset(const std::string& name) {
   return kDone;
 }
 
-std::string lost_words(const Json& lost) {
+std::string lost_words(const exchange::Loss& lost) {
   std::string words;
-  if (lost.contains("normal_deg")) {
-    const Json& deg = lost["normal_deg"];
-    words += fmt::format("; normals {:.3g} deg, 95 % within {:.3g}, at most {:.3g}",
-                         deg["mean"].get<double>(), deg["p95"].get<double>(), deg["max"].get<double>());
+  if (lost.normal) {
+    words += fmt::format("; normals {:.3g} deg, 95 % within {:.3g}, at most {:.3g}", lost.normal->mean_deg,
+                         lost.normal->p95_deg, lost.normal->max_deg);
   }
-  if (lost.contains("albedo")) {
-    const Json& albedo = lost["albedo"];
-    words += fmt::format("; albedo {:.2g}", albedo["mean"].get<double>());
-    if (albedo["psnr_db"].is_number()) words += fmt::format(", {:.1f} dB", albedo["psnr_db"].get<double>());
+  if (lost.albedo) {
+    words += fmt::format("; albedo {:.2g}", lost.albedo->mean_abs);
+    if (lost.albedo->psnr_db) words += fmt::format(", {:.1f} dB", *lost.albedo->psnr_db);
   }
-  const Json levels = lost.value("by_distance", Json::array());
-  const Json* seen = nullptr;
-  for (const Json& each : levels) {
-    if (each["level"].get<int>() <= kToldDistance) seen = &each;
+  const exchange::DistanceLoss* seen = nullptr;
+  for (const exchange::DistanceLoss& each : lost.by_distance) {
+    if (each.level <= kToldDistance) seen = &each;
   }
   if (seen != nullptr)
-    words += fmt::format("; roughness {:.2g} off {} times as far", (*seen)["lost"].get<double>(),
-                         1 << (*seen)["level"].get<int>());
+    words += fmt::format("; roughness {:.2g} off {} times as far", seen->mean_abs, 1 << seen->level);
   return words;
 }
 
 void print_report(const ExportReport& report) {
-  const Json& d = report.document;
+  const ExportFacts& facts = report.facts;
   print(report.folder.string());
   if (report.was_there) print("  is there already: same maps, same preset, same options");
-  const std::string size =
-      d["size_mm"].is_array()
-          ? fmt::format("{:.6g} x {:.6g} mm", d["size_mm"][0].get<double>(), d["size_mm"][1].get<double>())
-          : "size not known";
-  print(fmt::format("  {} x {} pixels, {}, normals {}, roughness as {}", d["width"].get<int>(),
-                    d["height"].get<int>(), size, d["normal"].get<std::string>(),
-                    d["roughness"].get<std::string>()));
+  const std::string size = facts.size_mm.empty()
+                               ? "size not known"
+                               : fmt::format("{:.6g} x {:.6g} mm", facts.size_mm[0], facts.size_mm[1]);
+  print(fmt::format("  {} x {} pixels, {}, normals {}, roughness as {}", facts.size.width, facts.size.height,
+                    size, facts.normal, facts.roughness));
   for (const std::string& line : report.source) print("  " + line);
-  for (const Json& file : d["files"]) {
-    print(fmt::format("  {}: {}, {:.2f} MB{}", file["file"].get<std::string>(),
-                      file["encoding"].get<std::string>(), file["bytes"].get<double>() * 1e-6,
-                      lost_words(file["lost"])));
+  for (const ExportedFile& file : facts.files) {
+    print(fmt::format("  {}: {}, {:.2f} MB{}", file.file, file.encoding,
+                      static_cast<double>(file.bytes) * 1e-6, lost_words(file.lost)));
   }
-  for (const Json& document : d["documents"]) {
-    print(fmt::format("  {}: {:.2f} MB", document["file"].get<std::string>(),
-                      document["bytes"].get<double>() * 1e-6));
-    for (const Json& left_out : document["left_out"]) print("    " + left_out.get<std::string>());
+  for (const WrittenDocument& document : facts.documents) {
+    print(fmt::format("  {}: {:.2f} MB", document.name, static_cast<double>(document.bytes) * 1e-6));
+    for (const std::string& left_out : document.left_out) print("    " + left_out);
   }
-  for (const Json& text : d["notes"]) print("  " + text.get<std::string>());
+  for (const std::string& text : facts.notes) print("  " + text);
 }
 
 Result<int> run_export(const ExportRequest& a, const CommonArguments& common) {
@@ -104,7 +96,7 @@ Result<int> run_export(const ExportRequest& a, const CommonArguments& common) {
     Json json = {
         {"folder", report.folder.string()}, {"was_there", report.was_there}, {"seconds", report.seconds}};
     json["source"] = report.source;
-    json.update(report.document);
+    json.update(json_of(report.facts));
     exports.push_back(std::move(json));
   }
   if (common.json) print_json({{"exports", std::move(exports)}});
@@ -115,7 +107,7 @@ void print_prices(const std::vector<ExportPrice>& prices) {
   print(fmt::format("{:28}  {:15}  {:>9}  {:>8}  {}", "file", "stored as", "MB", "seconds", "lost"));
   for (const ExportPrice& price : prices) {
     const std::string name = price.preset.empty() ? price.file : price.preset + ": " + price.file;
-    std::string lost = lost_words(json_of(price.loss));
+    std::string lost = lost_words(price.loss);
     if (lost.starts_with("; ")) lost.erase(0, 2);
     print(fmt::format("{:28}  {:15}  {:>9.2f}  {:>8.2f}  {}{}", name, words_of(price.stored),
                       price.bytes * 1e-6, price.seconds, lost, price.is_chosen ? ", chosen" : ""));

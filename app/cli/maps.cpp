@@ -18,28 +18,23 @@ namespace weft::app {
 namespace {
 
 void print_words(const MapsReport& report) {
-  const Json& d = report.document;
+  const MapSetFacts& facts = report.facts;
   print(report.folder.string());
   if (report.was_there) print("  is there already: same solve, same recipe, same options");
-  const double mm = d["mm_per_pixel"].get<double>();
-  print(fmt::format("  {} x {} pixels of {:.5g} mm{}", d["width"].get<int>(), d["height"].get<int>(), mm,
-                    d["is_tile"].get<bool>() ? ", a tile" : ""));
-  for (const std::string& line : source_lines(d)) print("  " + line);
-  for (const Json& map : d["maps"]) {
-    const std::string unit = map.contains("unit") ? " " + map["unit"].get<std::string>() : "";
-    if (map.contains("constant")) {
-      print(fmt::format("  {}: {:.4g}{}, {}", map["name"].get<std::string>(), map["constant"].get<double>(),
-                        unit, map["why"].get<std::string>()));
+  print(fmt::format("  {} x {} pixels of {:.5g} mm{}", facts.size.width, facts.size.height,
+                    facts.mm_per_pixel, facts.is_tile ? ", a tile" : ""));
+  for (const std::string& line : source_lines(facts.source)) print("  " + line);
+  for (const MapFacts& map : facts.maps) {
+    const std::string unit = map.unit.empty() ? "" : " " + map.unit;
+    if (map.constant) {
+      print(fmt::format("  {}: {:.4g}{}, {}", map.name, *map.constant, unit, map.why));
     } else {
-      print(fmt::format("  {}: {:.4g} to {:.4g}{}, {}", map["name"].get<std::string>(),
-                        map["least"].get<double>(), map["most"].get<double>(), unit,
-                        map["source"].get<std::string>()));
+      print(fmt::format("  {}: {:.4g} to {:.4g}{}, {}", map.name, map.least, map.most, unit,
+                        kMapSourceNames[static_cast<std::size_t>(map.source)]));
     }
   }
-  for (const Json& verdict : d["verdicts"]) {
-    print(fmt::format("  {}: {}; {}", verdict["name"].get<std::string>(), verdict["text"].get<std::string>(),
-                      verdict["remedy"].get<std::string>()));
-  }
+  for (const Verdict& verdict : facts.verdicts)
+    print(fmt::format("  {}: {}; {}", verdict.name, verdict.text, verdict.remedy));
   print(fmt::format("  look at {}", (report.folder / "report.html").string()));
 }
 
@@ -83,11 +78,11 @@ Result<int> make(const MapsRequest& arguments, const CommonArguments& common) {
   }();
   if (!report) return report.error();
   if (common.json) {
-    print_product(report->document, report->folder, report->was_there);
+    print_product(json_of(report->facts), report->folder, report->was_there);
   } else {
     print_words(*report);
   }
-  const bool has_verdicts = !report->document["verdicts"].empty();
+  const bool has_verdicts = !report->facts.verdicts.empty();
   return arguments.is_strict && has_verdicts ? kDoneWithWarnings : kDone;
 }
 

@@ -46,7 +46,7 @@ std::string shown(const Json& value) {
 // Which solves a material is of, and what is stale of them.
 void print_scans(const Json& scans) {
   for (const Json& scan : scans) {
-    for (const std::string& line : source_lines(scan))
+    for (const std::string& line : source_lines(source_in(scan)))
       print(fmt::format("  {}: {}", scan.value("session", "scan"), line));
   }
 }

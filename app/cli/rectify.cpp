@@ -21,15 +21,15 @@ Result<int> rectify(const RectifyOptions& options, const CommonArguments& common
   }();
   if (!report) return report.error();
   if (common.json) {
-    print_product(report->document, report->folder, report->was_there);
+    print_product(json_of(report->facts), report->folder, report->was_there);
     return kDone;
   }
-  const Json& d = report->document;
+  const RectifyFacts& facts = report->facts;
   print(report->folder.string());
-  for (const std::string& line : source_lines(d)) print("  " + line);
+  for (const std::string& line : source_lines(facts.source)) print("  " + line);
   print(report->was_there ? "  is there already: same solve, same options"
-                          : fmt::format("  {} x {} pixels of {:.5g} mm", d["width"].get<int>(),
-                                        d["height"].get<int>(), d["mm_per_pixel"].get<double>()));
+                          : fmt::format("  {} x {} pixels of {:.5g} mm", facts.size.width, facts.size.height,
+                                        facts.mm_per_pixel));
   return kDone;
 }
 

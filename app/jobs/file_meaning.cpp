@@ -7,10 +7,10 @@
 #include <fstream>
 #include <utility>
 
+#include "app/jobs/export_facts.h"
 #include "app/jobs/linear_image.h"
 #include "core/color_spaces.h"
 #include "core/files.h"
-#include "core/json_document.h"
 #include "core/vec.h"
 #include "exchange/blocks/dds.h"
 #include "exchange/blocks/decode.h"
@@ -22,8 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kDds = "dds";
-constexpr const char* kExportDocument = "export.json";
-constexpr const char* kExportSchema = "weft.export";
 constexpr int kMostFolders = 3;  // between a texture and its export.json: layers/NAME/FILE
 
 // --- blocks
@@ -63,62 +61,51 @@ Result<ImageFileInfo> info_of_file(const fs::path& file) {
 // --- export.json
 
 // The entry of a file in the nearest export.json above it.
-std::optional<Json> listing_of(const fs::path& file) {
+std::optional<ExportedFile> listing_of(const fs::path& file) {
   const fs::path path = fs::absolute(file).lexically_normal();
   fs::path folder = path.parent_path();
   for (int i = 0; i < kMostFolders; ++i, folder = folder.parent_path()) {
-    if (!is_there(folder / kExportDocument)) continue;
-    const Result<Json> document = read_json(folder / kExportDocument, kExportSchema, 1);
-    if (!document || !document->contains("files") || !(*document)["files"].is_array()) return std::nullopt;
+    if (!is_there(folder / kExportProduct.document)) continue;
+    const Result<ExportFacts> facts = read_export(folder);
+    if (!facts) return std::nullopt;
     const std::string name = path.lexically_relative(folder).generic_string();
-    for (const Json& entry : (*document)["files"]) {
-      if (entry.is_object() && entry.value("file", Json()) == name) return entry;
-    }
-    return std::nullopt;
+    const auto found = std::ranges::find(facts->files, name, &ExportedFile::file);
+    return found == facts->files.end() ? std::nullopt : std::optional(*found);
   }
   return std::nullopt;
 }
 
 template <typename Names>
-std::size_t index_among(const Names& names, const Json& entry, const char* key) {
-  const std::string word = entry.contains(key) && entry[key].is_string() ? entry[key].get<std::string>() : "";
+std::size_t index_among(const Names& names, const std::string& word) {
   const auto found = std::ranges::find(names, word);
   return found == names.end() ? 0 : static_cast<std::size_t>(found - names.begin());
 }
 
-// The size that is listed, which blocks are padded from; nothing where the file is another one by now.
-std::optional<Size> listed_size(const Json& entry, const ImageFileInfo& info) {
-  const Json width = entry.value("width", Json()), height = entry.value("height", Json());
-  if (!width.is_number_integer() || !height.is_number_integer()) return std::nullopt;
-  const Size size = {width.get<int>(), height.get<int>()};
-  const bool is_alike = info.size == (info.format == kDds ? exchange::whole_blocks(size) : size);
-  const bool has_channels = entry.contains("channels") && entry["channels"].is_array() &&
-                            entry["channels"].size() <= info.channels.size();
-  return is_alike && has_channels ? std::optional(size) : std::nullopt;
+// Whether the file is still the one that is listed; blocks are padded from its size.
+bool is_as_listed(const ExportedFile& listed, const ImageFileInfo& info) {
+  const bool is_alike =
+      info.size == (info.format == kDds ? exchange::whole_blocks(listed.size) : listed.size);
+  return is_alike && listed.channels.size() <= info.channels.size();
 }
 
-void take_listing(const Json& entry, FileMeaning& meaning) {
+void take_listing(const ExportedFile& listed, FileMeaning& meaning) {
   meaning.is_listed = true;
-  meaning.direction = static_cast<exchange::NormalDirection>(
-      index_among(exchange::kNormalDirectionNames, entry, "direction"));
-  if (entry.contains("roughness")) {
+  meaning.direction =
+      static_cast<exchange::NormalDirection>(index_among(exchange::kNormalDirectionNames, listed.direction));
+  if (!listed.roughness.empty()) {
     meaning.roughness = static_cast<exchange::RoughnessConvention>(
-        index_among(exchange::kRoughnessConventionNames, entry, "roughness"));
+        index_among(exchange::kRoughnessConventionNames, listed.roughness));
   }
-  const bool is_srgb = entry.value("color", Json()) == "srgb";
-  for (std::size_t c = 0; c < entry["channels"].size(); ++c) {
-    const Json& written = entry["channels"][c];
-    const Json name = written.is_object() ? written.value("name", Json()) : Json();
-    const exchange::Channel* channel =
-        name.is_string() ? exchange::channel_named(name.get<std::string>()) : nullptr;
+  const bool is_srgb = listed.color == ColorSpace::kSrgb;
+  for (std::size_t c = 0; c < listed.channels.size(); ++c) {
+    const ExportedChannel& written = listed.channels[c];
+    const exchange::Channel* channel = exchange::channel_named(written.name);
     if (channel == nullptr) continue;
     ChannelMeaning& of = meaning.channels[c];
     of.is = channel->name;
     of.is_srgb = is_srgb && channel->kind == exchange::ChannelKind::kColor;
-    const Json at_0 = written.value("at_0", Json()), at_1 = written.value("at_1", Json());
-    of.range = at_0.is_number() && at_1.is_number()
-                   ? exchange::ChannelRange{at_0.get<double>(), at_1.get<double>()}
-                   : exchange::ChannelRange{};
+    of.range = written.at_0 && written.at_1 ? exchange::ChannelRange{*written.at_0, *written.at_1}
+                                            : exchange::ChannelRange{};
   }
 }
 
@@ -187,10 +174,10 @@ Result<FileMeaning> meaning_of(const fs::path& file) {
   if (!info) return std::move(info).error();
   FileMeaning meaning = {.info = std::move(*info), .channels = {}};
   meaning.channels.resize(meaning.info.channels.size());
-  const std::optional<Json> entry = listing_of(file);
-  if (const auto size = entry ? listed_size(*entry, meaning.info) : std::nullopt) {
-    meaning.info.size = *size;
-    take_listing(*entry, meaning);
+  if (const std::optional<ExportedFile> listed = listing_of(file);
+      listed && is_as_listed(*listed, meaning.info)) {
+    meaning.info.size = listed->size;
+    take_listing(*listed, meaning);
     return meaning;
   }
   take_directions(meaning);

@@ -12,6 +12,7 @@
 #include "app/jobs/described_fields.h"
 #include "core/calibration.h"
 #include "core/field_check.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/solve_maps.h"
@@ -27,8 +28,6 @@ namespace {
 namespace fs = std::filesystem;
 using material::TableGrid;
 
-constexpr ProductKind kRectified = {"weft.rectified", "rectify.json", "set of rectified maps",
-                                    "rectify a solve first with weft rectify"};
 constexpr int kVersion = 3;  // raised whenever the bytes of a map may change
 constexpr const char* kFilter =
     "cubic convolution, a = -1/2 (Keys 1981), stretched to the grid where it is coarser than the frame";
@@ -144,31 +143,24 @@ Result<void> rectify_maps(const Rectification& r, const SolveMaps& maps, const f
   return {};
 }
 
-Json document_of(const std::string& id, const std::string& solve, const Calibration& calibration,
-                 const Rectification& r, std::int64_t solved) {
+RectifyFacts facts_of(const std::string& id, const library::SourceFacts& source,
+                      const Calibration& calibration, const Rectification& r, std::int64_t solved) {
   const TableGrid& g = r.grid;
   const Vec3 corner = g.point_mm(0, 0);
-  return {{"schema", fmt::format("{}/1", kRectified.schema)},
-          {"id", id},
-          {"solve", solve},
-          {"calibration", calibration.id},
-          {"width", g.size.width},
-          {"height", g.size.height},
-          {"mm_per_pixel", g.mm_per_pixel},
-          {"height_mm", g.height_mm},
-          {"turn_deg", g.turn_deg},
-          {"centre_mm", {g.centre_x_mm, g.centre_y_mm}},
-          {"first_pixel_mm", {corner.x, corner.y}},
-          {"normals", "in the grid's axes: x along its rows, y up its columns, z to the camera"},
-          {"filter", kFilter},
-          {"compression", name_of(r.options.compression)},
-          {"pixels", solved}};
-}
-
-Json with_source(Json document, const Json& source) {
-  document.erase("stale");
-  document.update(source);
-  return document;
+  return {.id = id,
+          .source = source,
+          .calibration = calibration.id,
+          .size = g.size,
+          .mm_per_pixel = g.mm_per_pixel,
+          .height_mm = g.height_mm,
+          .turn_deg = g.turn_deg,
+          .centre_mm = {g.centre_x_mm, g.centre_y_mm},
+          .first_pixel_mm = {corner.x, corner.y},
+          .normals = "in the grid's axes: x along its rows, y up its columns, z to the camera",
+          .filter = kFilter,
+          .compression = r.options.compression,
+          .pixels = solved,
+          .document = {}};
 }
 
 Result<Calibration> calibration_with_camera(const fs::path& folder) {
@@ -197,6 +189,35 @@ void describe(Fields& fields, RectifyOptions& o) {
   fields.require(o.band_rows >= 1, "band_rows", "must be 1 or more");
 }
 
+void describe(Fields& fields, RectifyFacts& f) {
+  fields.keep(f.document);
+  fields.value({"id", "Hash of the solve, the calibration and the options", {}, kMustSay}, f.id);
+  fields.value({"solve", "Id of the solve that they are of", {}, kMustSay}, f.source.solve);
+  fields.value({"calibration", "Id of that whose camera was undone", {}, kMustSay}, f.calibration);
+  fields.value({"width", "Of the maps, pixels", kAboveZero, kMustSay}, f.size.width);
+  fields.value({"height", "Of the maps, pixels", kAboveZero, kMustSay}, f.size.height);
+  fields.value({"mm_per_pixel", "Side of a pixel, mm", kAboveZero, kMustSay}, f.mm_per_pixel);
+  fields.value({"height_mm", "Of the plane of the grid above the table, mm", {}, kMustSay}, f.height_mm);
+  fields.value({"turn_deg", "Of the grid, counterclockwise from above, degrees", {}, kMustSay}, f.turn_deg);
+  fields.value({"centre_mm", "Of the grid: x and y on the table, mm", {}, kMustSay}, f.centre_mm);
+  fields.value({"first_pixel_mm", "Of the middle of the upper left pixel: x and y on the table, mm"},
+               f.first_pixel_mm);
+  fields.value({"normals", "Which axes they are in, a sentence"}, f.normals);
+  fields.value({"filter", "How the solve's pixels were weighed, a sentence"}, f.filter);
+  fields.choice({"compression", "Of its EXR files"}, f.compression, kCompressionNames);
+  fields.value({"pixels", "With a solution"}, f.pixels);
+  fields.value({"level", "Of the solve, or the method of comparison", {}, kUnlessEmpty}, f.source.level);
+  fields.value({"draft", "The solve is a preview"}, f.source.is_draft);
+  fields.value({"stale", "Why another would have been made then, sentences", {}, kUnlessEmpty},
+               f.source.stale);
+}
+
+Json json_of(const RectifyFacts& facts) {
+  Json json = {{"schema", fmt::format("{}/1", kRectifiedProduct.schema)}};
+  write_fields(json, facts);
+  return json;
+}
+
 Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobContext& context) {
   if (const Result<void> ok = check_fields(options); !ok) return ok.error();
   const Result<Session> session = read_session(options.session);
@@ -208,7 +229,7 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   const Result<library::ChoosableSolve> solve =
       library::solve_for_maps(solves, options.solve, options.is_draft);
   if (!solve) return solve.error();
-  const Json source = library::json_of_source(*solve, why_stale(solves, solve->id));
+  const library::SourceFacts source = library::source_of(*solve, why_stale(solves, solve->id));
   const Result<SolveMaps> maps = SolveMaps::open(solve->folder);
   if (!maps) return maps.error();
   const CameraModel seen = seen_from(session->pose, session->cloth_height_mm, *calibration->camera);
@@ -225,10 +246,17 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
                        {"height_mm", grid->height_mm},
                        {"turn_deg", grid->turn_deg},
                        {"compression", name_of(options.compression)}};
-  const Product product = product_of(kRectified, inputs, session->folder / "rectified", options.output);
+  const Product product =
+      product_of(kRectifiedProduct, inputs, session->folder / "rectified", options.output);
   Result<std::optional<Json>> finished = find_finished(product);
   if (!finished) return std::move(finished).error();
-  if (*finished) return RectifyReport{product.folder, true, with_source(std::move(**finished), source)};
+  if (*finished) {
+    Result<RectifyFacts> facts =
+        read_fields<RectifyFacts>(**finished, (product.folder / kRectifiedProduct.document).string());
+    if (!facts) return std::move(facts).error();
+    facts->source = source;
+    return RectifyReport{product.folder, true, std::move(*facts)};
+  }
 
   Result<Image<std::uint16_t>> status = maps->status();
   if (!status) return std::move(status).error();
@@ -238,11 +266,12 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   std::int64_t solved = 0;
   if (const Result<void> ok = rectify_status(r, solved); !ok) return ok.error();
   if (const Result<void> ok = rectify_maps(r, *maps, solve->folder); !ok) return ok.error();
-  Json document = with_source(document_of(product.id, solve->id, *calibration, r, solved), source);
-  if (const Result<void> ok = write_json(partial.path() / "rectify.json", document); !ok) return ok.error();
+  RectifyFacts facts = facts_of(product.id, source, *calibration, r, solved);
+  const Result<void> written = write_json(partial.path() / kRectifiedProduct.document, json_of(facts));
+  if (!written) return written.error();
   if (const Result<void> ok = partial.publish(); !ok) return ok.error();
   context.progress("rectify", 1);
-  return RectifyReport{product.folder, false, std::move(document)};
+  return RectifyReport{product.folder, false, std::move(facts)};
 }
 
 }  // namespace weft::app

@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "core/compression.h"
 #include "core/fields.h"
+#include "core/image.h"
 #include "core/job.h"
 #include "core/json_document.h"
+#include "core/product.h"
 #include "core/result.h"
+#include "library/current.h"
 
 namespace weft::app {
+
+inline constexpr ProductKind kRectifiedProduct = {"weft.rectified", "rectify.json", "set of rectified maps",
+                                                  "rectify a solve first with weft rectify"};
 
 struct RectifyOptions {
   std::filesystem::path session;
@@ -26,11 +34,29 @@ struct RectifyOptions {
 };
 void describe(Fields& fields, RectifyOptions& options);
 
+/// What rectify.json says of rectified maps (weft.rectified/1).
+struct RectifyFacts {
+  std::string id;
+  library::SourceFacts source;
+  std::string calibration;
+  Size size;  ///< of the maps
+  double mm_per_pixel = 0;
+  double height_mm = 0;  ///< of the cloth above the table
+  double turn_deg = 0;   ///< of the grid, counterclockwise from above
+  std::array<double, 2> centre_mm = {}, first_pixel_mm = {};
+  std::string normals, filter;  ///< their axes, and how maps were sampled: a sentence each
+  Compression compression = Compression::kNone;
+  std::int64_t pixels = 0;  ///< with a solution
+  Json document;            ///< as it was read, so that fields of newer versions survive
+};
+void describe(Fields& fields, RectifyFacts& facts);
+Json json_of(const RectifyFacts& facts);
+
 /// What a rectification left behind.
 struct RectifyReport {
   std::filesystem::path folder;
   bool was_there = false;  ///< a complete one of the same solve and options was found
-  Json document;           ///< rectify.json, with what is stale of the solve today
+  RectifyFacts facts;      ///< with what is stale of the solve today
 };
 
 /// Puts the maps of a solve on a square grid of the table at the session's cloth_height_mm, lens and

@@ -374,14 +374,11 @@ Result<void> make_tile(const StudyOptions& options, const TileMaps& tile) {
   return write_map_set(*cloth, kTile, kTileMmPerPixel, tile.folder());
 }
 
-double megabytes_of(const Json& document) {
-  double bytes = 0;
-  for (const char* list : {"files", "documents"}) {
-    for (const Json& each : document[list]) {
-      if (!each.contains("inside")) bytes += each["bytes"].get<double>();
-    }
-  }
-  return bytes * 1e-6;
+double megabytes_of(const app::ExportFacts& facts) {
+  std::uint64_t bytes = 0;
+  for (const app::ExportedFile& each : facts.files) bytes += each.inside.empty() ? each.bytes : 0;
+  for (const app::WrittenDocument& each : facts.documents) bytes += each.bytes;
+  return static_cast<double>(bytes) * 1e-6;
 }
 
 Result<Json> measure_presets(const StudyOptions& options, const TileMaps& tile, const std::string& name,
@@ -397,8 +394,8 @@ Result<Json> measure_presets(const StudyOptions& options, const TileMaps& tile, 
   std::size_t files = 0;
   double megabytes = 0;
   for (const app::ExportReport& report : *reports) {
-    files += report.document["files"].size();
-    megabytes += megabytes_of(report.document);
+    files += report.facts.files.size();
+    megabytes += megabytes_of(report.facts);
   }
   std::error_code ignored;
   fs::remove_all(asked.output, ignored);

@@ -184,6 +184,32 @@ DistanceLoss difference_of(const std::string& channel, int level, View<const flo
 
 }  // namespace
 
+void describe(Fields& fields, AngleLoss& l) {
+  fields.value({"mean", "Degrees", {}, kOrNull}, l.mean_deg);
+  fields.value({"p95", "95th percentile, degrees", {}, kOrNull}, l.p95_deg);
+  fields.value({"max", "Degrees", {}, kOrNull}, l.max_deg);
+}
+
+void describe(Fields& fields, ColorLoss& l) {
+  fields.value({"mean", "Of the difference of reflectances", {}, kOrNull}, l.mean_abs);
+  fields.value({"psnr_db", "Of the samples; null where nothing is lost", {}, kOrNull}, l.psnr_db);
+}
+
+void describe(Fields& fields, DistanceLoss& l) {
+  fields.value({"channel", "Which roughness", {}, kMustSay}, l.channel);
+  fields.value({"level", "Seen from 2 to its power times as far", {}, kMustSay}, l.level);
+  fields.value({"mean", "Of the cloth", {}, kOrNull}, l.mean);
+  fields.value({"engine", "Of means of the file, as an engine makes them", {}, kOrNull}, l.engine);
+  fields.value({"lost", "Mean of the difference", {}, kOrNull}, l.mean_abs);
+}
+
+void describe(Fields& fields, Loss& l) {
+  fields.object({"normal_deg", "Angles between normals, degrees", {}, kUnlessEmpty}, l.normal);
+  fields.object({"albedo", "Of colours", {}, kUnlessEmpty}, l.albedo);
+  fields.list({"by_distance", "Of a file of one level: what becomes of its roughness", {}, kUnlessEmpty},
+              l.by_distance);
+}
+
 double angle_deg(const float* a, const float* b) {
   const double ax = static_cast<double>(a[0]), ay = static_cast<double>(a[1]), az = static_cast<double>(a[2]);
   const double bx = static_cast<double>(b[0]), by = static_cast<double>(b[1]), bz = static_cast<double>(b[2]);

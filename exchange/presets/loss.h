@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/fields.h"
 #include "core/image.h"
 #include "exchange/presets/channels.h"
 #include "exchange/presets/mips.h"
@@ -50,6 +51,9 @@ struct Loss {
   std::vector<ChannelLoss> channels = {};
   std::vector<DistanceLoss> by_distance = {};  ///< of a file of one level
 };
+
+/// All but the channels.
+void describe(Fields& fields, Loss& loss);
 
 /// `samples` are those of the file as it was read back, a plane a channel, of the size of the maps. They are
 /// used up.

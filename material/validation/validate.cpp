@@ -77,15 +77,7 @@ double counted(const Image<std::uint8_t>& counts) {
 }  // namespace
 
 const char* name_of(Severity severity) {
-  switch (severity) {
-    case Severity::kPassed:
-      return "passed";
-    case Severity::kWarning:
-      return "warning";
-    case Severity::kError:
-      return "error";
-  }
-  return "";
+  return kSeverityNames[static_cast<std::size_t>(severity)];
 }
 
 bool has_better_level(const Checked& checked) {

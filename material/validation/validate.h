@@ -17,6 +17,7 @@
 namespace weft::material {
 
 enum class Severity { kPassed, kWarning, kError };
+inline constexpr std::array kSeverityNames = {"passed", "warning", "error"};
 const char* name_of(Severity severity);
 
 /// What one check says. Every check that had its input gives one, passed or not.

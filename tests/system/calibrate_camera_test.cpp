@@ -141,7 +141,7 @@ void expect_true_ruler(const Workspace& work, const fs::path& measured) {
       calibration::grey_picture(rgb).plane(),
       {.kind = calibration::BoardKind::kCheckerboard, .squares_x = 14, .squares_y = 9, .square_mm = 12});
   ASSERT_EQ(board.fault, calibration::BoardFault::kNone) << board.why;
-  const double mm_per_pixel = maps->document["mm_per_pixel"].get<double>();
+  const double mm_per_pixel = maps->facts.mm_per_pixel;
   double most_mm = 0;
   for (const auto& a : board.corners) {
     for (const auto& b : board.corners) {

@@ -66,7 +66,7 @@ class Exports : public testing::Test {
     const auto made = weft::app::make_maps(maps, {});
     ASSERT_TRUE(made) << made.error().message();
     maps_ = made->folder;
-    mm_per_pixel_ = made->document["mm_per_pixel"].get<double>();
+    mm_per_pixel_ = made->facts.mm_per_pixel;
   }
   static void TearDownTestSuite() {
     delete work_;
@@ -101,7 +101,7 @@ TEST_F(Exports, OfEveryPresetAreTheSameBytesTwiceAndForAnyThreads) {
   EXPECT_EQ(contents_of(*work_ / "one"), contents_of(*work_ / "two"));
   for (const ExportReport& report : one) {
     EXPECT_FALSE(report.was_there);
-    for (const Json& file : report.document["files"]) {
+    for (const Json& file : Json(json_of(report.facts)["files"])) {
       if (file.contains("inside")) continue;
       const fs::path path = report.folder / file["file"].get<std::string>();
       const auto digest = sha256_of_file(path);
@@ -138,7 +138,7 @@ TEST_F(Exports, HoldTheMapsWithinHalfAStepOfTheirQuantiser) {
   const std::vector<std::string> presets = {"png16", "tiff16", "polyhaven", "unreal", "unity-hdrp", "godot"};
   int compared = 0;
   for (const ExportReport& report : exported(presets, *work_ / "half")) {
-    for (const Json& file : report.document["files"]) {
+    for (const Json& file : Json(json_of(report.facts)["files"])) {
       const fs::path path = report.folder / file["file"].get<std::string>();
       const auto image = read_image(path);
       ASSERT_TRUE(image) << image.error().message();
@@ -164,7 +164,7 @@ TEST_F(Exports, HoldTheMapsWithinHalfAStepOfTheirQuantiser) {
 }
 
 TEST_F(Exports, SayWhatTheyAreWhatTheyLoseAndWhereTheyComeFrom) {
-  const Json document = exported({"unreal"}, *work_ / "said")[0].document;
+  const Json document = json_of(exported({"unreal"}, *work_ / "said")[0].facts);
   EXPECT_EQ(document["schema"], "weft.export/1");
   EXPECT_EQ(document["roughness"], "root");
   EXPECT_DOUBLE_EQ(document["mm_per_pixel"].get<double>(), mm_per_pixel_);
@@ -191,7 +191,7 @@ TEST_F(Exports, SayWhatTheyAreWhatTheyLoseAndWhereTheyComeFrom) {
 
 TEST_F(Exports, CarryTheSizeOfTheirPixels) {
   for (const ExportReport& report : exported({"exr", "png16", "tiff16"}, *work_ / "sized")) {
-    for (const Json& file : report.document["files"]) {
+    for (const Json& file : Json(json_of(report.facts)["files"])) {
       const auto info = read_image_info(report.folder / file["file"].get<std::string>());
       ASSERT_TRUE(info) << info.error().message();
       // A PNG has whole pixels a metre.
@@ -221,7 +221,7 @@ TEST_F(Exports, OfASmallerSizeKeepTheMillimetres) {
   options.size_px = 50;
   const auto reports = export_maps(options, {});
   ASSERT_TRUE(reports) << reports.error().message();
-  const Json& d = (*reports)[0].document;
+  const Json d = json_of((*reports)[0].facts);
   EXPECT_EQ(d["width"], 50);
   const LoadedImage normal = map_file("normal.exr");
   EXPECT_NEAR(d["size_mm"][0].get<double>() / (normal.info.size.width * mm_per_pixel_), 1, 1e-9);
@@ -331,7 +331,8 @@ TEST_F(GlossyExports, HaveMipsOfRoughnessThatAreTheSetsOwn) {
 TEST_F(GlossyExports, OfOneLevelSayWhatRoughnessLosesByDistance) {
   const ExportReport report = glossy("png16");
   const Json* roughness = nullptr;
-  for (const Json& file : report.document["files"]) {
+  const Json document = json_of(report.facts);
+  for (const Json& file : document["files"]) {
     if (file["channels"][0]["name"] == "roughness") roughness = &file;
   }
   ASSERT_NE(roughness, nullptr);
@@ -346,16 +347,16 @@ TEST_F(GlossyExports, OfOneLevelSayWhatRoughnessLosesByDistance) {
     EXPECT_GE(level["lost"].get<double>(),
               0.999 * (level["mean"].get<double>() - level["engine"].get<double>()));
   }
-  EXPECT_THAT(report.document["notes"].dump(), HasSubstr("Seen from 8 times as far"));
+  EXPECT_THAT(document["notes"].dump(), HasSubstr("Seen from 8 times as far"));
   const ExportReport with_mips = glossy("arnold");
-  EXPECT_THAT(with_mips.document["notes"].dump(), testing::Not(HasSubstr("times as far")));
+  EXPECT_THAT(Json(with_mips.facts.notes).dump(), testing::Not(HasSubstr("times as far")));
 }
 
 TEST_F(Exports, HaveContainersThatTheirOwnCheckersTake) {
   const std::vector<ExportReport> reports = exported({"glb", "usdz", "u3m", "u3ma", "dds"}, *work_ / "boxes");
   ASSERT_EQ(reports.size(), 5U);
   const auto bytes = [&](std::size_t i) {
-    return bytes_of(reports[i].folder / reports[i].document["documents"][0]["file"].get<std::string>());
+    return bytes_of(reports[i].folder / reports[i].facts.documents.at(0).name);
   };
   const auto good = [](const Result<void>& checked) { return checked ? "" : checked.error().message(); };
   EXPECT_EQ(good(exchange::check_glb(bytes(0))), "");
@@ -367,7 +368,7 @@ TEST_F(Exports, HaveContainersThatTheirOwnCheckersTake) {
     for (const auto& [name, digest] : contents_of(reports[container].folder)) left.push_back(name);
     EXPECT_EQ(left.size(), 2U) << "the document and export.json: " << testing::PrintToString(left);
   }
-  for (const Json& file : reports[4].document["files"]) {
+  for (const Json& file : Json(json_of(reports[4].facts)["files"])) {
     const std::string dds = bytes_of(reports[4].folder / file["file"].get<std::string>());
     const auto texture = exchange::parse_dds(dds, "dds");
     ASSERT_TRUE(texture) << texture.error().message();

@@ -105,7 +105,7 @@ TEST_F(Maps, SayWhatTheyAreAndAreFinite) {
   MapsOptions wanted = options();
   wanted.maps = all_maps();
   const MapsReport report = made(wanted);
-  const Json& d = report.document;
+  const Json d = json_of(report.facts);
   EXPECT_EQ(d["schema"], "weft.maps/1");
   int files = 0;
   for (const Json& map : d["maps"]) {
@@ -137,14 +137,14 @@ TEST_F(Maps, ColourIsMultipliedAndHeightFollowsTheScale) {
     o.maps = {"height"};
     return o;
   }());
-  const double mm = plain.document["mm_per_pixel"].get<double>();
+  const double mm = plain.facts.mm_per_pixel;
   MapsOptions changed = options(R"([{"do": "color", "exposure": -1}, {"do": "scale", "mm_per_pixel": )" +
                                 std::to_string(2 * mm) + "}]");
   changed.maps = {"height"};
   const MapsReport other = made(changed);
   const auto range = [](const MapsReport& report) {
-    const Json& height = report.document["maps"][0];
-    return height["most"].get<double>() - height["least"].get<double>();
+    const app::MapFacts& height = report.facts.maps.at(0);
+    return height.most - height.least;
   };
   EXPECT_NEAR(range(other) / range(plain), 2, 1e-4);
   const auto before = read_image(plain.folder / "albedo.exr"),
@@ -158,8 +158,7 @@ TEST_F(Maps, OfAPreviewTakeThePlaceOfTheOneBefore) {
   preview.is_preview = true;
   const MapsReport first = made(preview);
   const MapsReport whole = made(options());
-  EXPECT_NEAR(first.document["mm_per_pixel"].get<double>() / whole.document["mm_per_pixel"].get<double>(), 4,
-              1e-9);
+  EXPECT_NEAR(first.facts.mm_per_pixel / whole.facts.mm_per_pixel, 4, 1e-9);
   preview.recipe = recipe_of(R"([{"do": "color", "exposure": 1}])");
   const MapsReport second = made(preview);
   EXPECT_FALSE(fs::exists(first.folder));
@@ -228,21 +227,22 @@ class MapsOverALight : public Maps {
 };
 
 TEST_F(MapsOverALight, OfAnOpenTableAreAllHoleAndOfClothThatHidesAllWithoutOne) {
-  const Json open = made(options_by(0)).document["maps"][0];
-  const Json closed = made(options_by(kDark)).document["maps"][0];
+  const Json open = made(options_by(0)).facts.maps.at(0).document;
+  const Json closed = made(options_by(kDark)).facts.maps.at(0).document;
   EXPECT_EQ(open["way"], "bare-table") << open.dump();
   EXPECT_NEAR(open["mean"].get<double>(), 0, 1e-3);
   EXPECT_EQ(closed["way"], "opaque") << closed.dump();
   EXPECT_NEAR(closed["mean"].get<double>(), 1, 1e-3);
   MapsOptions unknown = options_by(0);
   unknown.bare.clear();
-  EXPECT_THAT(made(unknown).document["verdicts"].dump(), HasSubstr("OPACITY_UNKNOWN"));
+  EXPECT_THAT(json_of(made(unknown).facts.verdicts).dump(), HasSubstr("OPACITY_UNKNOWN"));
 }
 
 TEST_F(MapsOverALight, HaveMipsThatCutAsMuchAsTheFinest) {
   const MapsReport report = made(options_by(1));
-  const Json& levels = report.document["maps"][0]["levels"];
-  ASSERT_GT(levels.size(), 3U) << report.document["maps"][0].dump();
+  const Json& map = report.facts.maps.at(0).document;
+  const Json& levels = map["levels"];
+  ASSERT_GT(levels.size(), 3U) << map.dump();
   for (const Json& level : levels) {
     const auto file = fmt::format("mips/opacity_{:02}.exr", level["level"].get<int>());
     EXPECT_TRUE(fs::exists(report.folder / file)) << file;
@@ -255,8 +255,8 @@ TEST_F(MapsOverALight, AreOfClothAloneWhereTheTableIsTakenOut) {
   wanted.table_albedo = {0.05, 0.05, 0.05};
   const MapsReport cloth = made(wanted);
   ASSERT_NE(cloth.folder, seen.folder);
-  const Json& table = cloth.document["table"];
-  ASSERT_GT(table["unmixed"].get<int>(), 0) << table.dump();
+  ASSERT_TRUE(cloth.facts.table);
+  ASSERT_GT(cloth.facts.table->unmixed, 0);
   const auto opacity = read_image(seen.folder / "opacity.exr"), with = read_image(seen.folder / "albedo.exr"),
              without = read_image(cloth.folder / "albedo.exr");
   ASSERT_TRUE(opacity && with && without);

@@ -69,18 +69,18 @@ TEST_F(Rectify, SaysWhereItsPixelsLie) {
   turned.mm_per_pixel = 0.1;
   turned.turn_deg = 90;
   const RectifyReport report = rectified(turned);
-  const Json& d = report.document;
-  EXPECT_EQ(d["solve"], solved.filename().string());
-  EXPECT_EQ(d["mm_per_pixel"], 0.1);
-  EXPECT_EQ(d["turn_deg"], 90);
+  const app::RectifyFacts& d = report.facts;
+  EXPECT_EQ(d.source.solve, solved.filename().string());
+  EXPECT_EQ(d.mm_per_pixel, 0.1);
+  EXPECT_EQ(d.turn_deg, 90);
   const auto normal = read_image(report.folder / "normal.exr"),
              albedo = read_image(report.folder / "albedo.exr");
   const auto sigma = read_image(report.folder / "sigma.exr"),
              status = read_image(report.folder / "status.png");
   ASSERT_TRUE(normal && albedo && sigma && status);
   for (const auto* map : {&normal, &albedo, &sigma, &status}) {
-    EXPECT_EQ((*map)->info.size.width, d["width"].get<int>());
-    EXPECT_EQ((*map)->info.size.height, d["height"].get<int>());
+    EXPECT_EQ((*map)->info.size.width, d.size.width);
+    EXPECT_EQ((*map)->info.size.height, d.size.height);
   }
   for (int y = 0; y < normal->info.size.height; ++y) {
     for (int x = 0; x < normal->info.size.width; ++x) {
@@ -95,7 +95,7 @@ TEST_F(Rectify, TakesTheCurrentSolveAndHalfSizeMapsOfThePreviewToo) {
   fs::last_write_time(fast / "solve.json",
                       fs::last_write_time(preview / "solve.json") - std::chrono::hours(1));
   const RectifyReport current = rectified(options());
-  EXPECT_EQ(current.document["solve"], fast.filename().string())
+  EXPECT_EQ(current.facts.source.solve, fast.filename().string())
       << "a preview that is newer does not become it";
   RectifyOptions named = options();
   named.solve = preview.filename().string();
@@ -104,9 +104,8 @@ TEST_F(Rectify, TakesTheCurrentSolveAndHalfSizeMapsOfThePreviewToo) {
   EXPECT_THAT(refused.error().remedy, HasSubstr("--draft"));
   named.is_draft = true;
   const RectifyReport half = rectified(named);
-  EXPECT_EQ(half.document["solve"], preview.filename().string());
-  EXPECT_NEAR(half.document["mm_per_pixel"].get<double>() / current.document["mm_per_pixel"].get<double>(), 2,
-              1e-3);
+  EXPECT_EQ(half.facts.source.solve, preview.filename().string());
+  EXPECT_NEAR(half.facts.mm_per_pixel / current.facts.mm_per_pixel, 2, 1e-3);
 }
 
 TEST_F(Rectify, RefusesInWordsAndLeavesNothingBehind) {

@@ -30,22 +30,19 @@ Error is_taken(const fs::path& folder, std::string why) {
 }
 
 // What lies where an export is to go: nothing, an export that may be replaced, or an error for anything else.
-Result<std::optional<Json>> earlier_export(const fs::path& folder) {
-  if (!is_there(folder)) return std::optional<Json>();
-  const fs::path file = folder / kExportProduct.document;
-  if (!is_there(file)) {
+Result<std::optional<ExportFacts>> earlier_export(const fs::path& folder) {
+  if (!is_there(folder)) return std::optional<ExportFacts>();
+  if (!is_there(folder / kExportProduct.document)) {
     std::error_code failed;
     if (fs::is_directory(folder, failed) && fs::is_empty(folder, failed) && !failed)
-      return std::optional<Json>();
+      return std::optional<ExportFacts>();
     return is_taken(folder, "it holds something other than an export");
   }
-  Result<Json> document = read_json(file, kExportProduct.schema, 1);
-  if (!document) return std::move(document).error();
+  Result<ExportFacts> facts = read_export(folder);
+  if (!facts) return std::move(facts).error();
   std::set<std::string> ours = {kExportProduct.document};
-  for (const char* list : {"files", "documents"}) {
-    if (!document->contains(list)) continue;
-    for (const Json& each : (*document)[list]) ours.insert(each.value("file", ""));
-  }
+  for (const ExportedFile& each : facts->files) ours.insert(each.file);
+  for (const WrittenDocument& each : facts->documents) ours.insert(each.name);
   std::error_code failed;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, failed)) {
     const std::string name = fs::relative(entry.path(), folder, failed).generic_string();
@@ -53,18 +50,17 @@ Result<std::optional<Json>> earlier_export(const fs::path& folder) {
       return is_taken(folder, fmt::format("beside an earlier export it holds {}", name));
   }
   if (failed) return cannot_read(folder, failed.value());
-  return std::optional<Json>(std::move(*document));
+  return std::optional<ExportFacts>(std::move(*facts));
 }
 
 // Whether every file that the document names is there.
-bool is_whole(const fs::path& folder, const Json& document) {
-  for (const char* list : {"files", "documents"}) {
-    for (const Json& each : document[list]) {
-      const bool is_inside = each.contains("inside");
-      if (!is_inside && !is_there(folder / each.value("file", ""))) return false;
-    }
-  }
-  return true;
+bool is_whole(const fs::path& folder, const ExportFacts& facts) {
+  return std::ranges::all_of(facts.files,
+                             [&](const ExportedFile& each) {
+                               return !each.inside.empty() || is_there(folder / each.file);
+                             }) &&
+         std::ranges::all_of(facts.documents,
+                             [&](const WrittenDocument& each) { return is_there(folder / each.name); });
 }
 
 // An earlier export goes only once the new one is whole, and comes back where that cannot take its place.
@@ -122,8 +118,9 @@ Result<void> finish(Work& work, const MapFolder& folder, const Json& provenance,
     documents->insert(documents->end(), layers->documents.begin(), layers->documents.end());
   }
   drop_numbers(*documents, aside, all);
-  work.report.document = export_document(*work.plan, folder, provenance, all, *documents);
-  if (Result<void> ok = write_json(aside / kExportProduct.document, work.report.document); !ok) return ok;
+  work.report.facts = export_facts(*work.plan, folder, provenance, all, *documents);
+  if (Result<void> ok = write_json(aside / kExportProduct.document, json_of(work.report.facts)); !ok)
+    return ok;
   work.report.seconds = watch.lap();
   for (const EncodedFile& file : files) work.report.seconds += file.seconds;
   return {};
@@ -168,14 +165,14 @@ Result<std::vector<ExportReport>> export_maps(const ExportOptions& asked, const 
   if (!prepared) return prepared.error();
   std::vector<Work> works;
   for (const PlannedExport& plan : prepared->plans) {
-    Result<std::optional<Json>> earlier = earlier_export(plan.folder);
+    Result<std::optional<ExportFacts>> earlier = earlier_export(plan.folder);
     if (!earlier) return std::move(earlier).error();
     Work work = {.plan = &plan,
                  .partial = nullptr,
                  .report = {.folder = plan.folder, .source = source_of(prepared->folder)}};
-    if (*earlier && (*earlier)->value("id", "") == plan.id && is_whole(plan.folder, **earlier)) {
+    if (*earlier && (*earlier)->id == plan.id && is_whole(plan.folder, **earlier)) {
       work.report.was_there = true;
-      work.report.document = std::move(**earlier);
+      work.report.facts = std::move(**earlier);
     }
     works.push_back(std::move(work));
   }

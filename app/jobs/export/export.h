@@ -7,16 +7,12 @@
 #include <vector>
 
 #include "app/jobs/export/map_folder.h"
+#include "app/jobs/export_facts.h"
 #include "core/job.h"
-#include "core/json_document.h"
-#include "core/product.h"
 #include "core/result.h"
 #include "exchange/presets/preset.h"
 
 namespace weft::app {
-
-inline constexpr ProductKind kExportProduct = {"weft.export", "export.json", "export",
-                                               "make it first with weft export"};
 
 struct ExportOptions {
   /// A session, a set of maps, a built material, a solve, or a material that is built first: a file that ends
@@ -39,7 +35,7 @@ struct ExportOptions {
 struct ExportReport {
   std::filesystem::path folder;
   bool was_there = false;                ///< a complete one of the same maps, preset and options was found
-  Json document = {};                    ///< export.json
+  ExportFacts facts = {};                ///< as export.json has them
   std::vector<std::string> source = {};  ///< which solve it is of, and what is stale of that today
   double seconds = 0;                    ///< 0 where it was there
 };

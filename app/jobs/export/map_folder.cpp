@@ -258,15 +258,13 @@ std::vector<std::string> source_of(const MapFolder& folder) {
   std::vector<std::string> lines;
   if (folder.kind == "material") {
     for (const Json& scan : folder.document.value("scans", Json::array())) {
-      for (const std::string& line : source_lines(scan))
+      for (const std::string& line : source_lines(source_in(scan)))
         lines.push_back(fmt::format("{}: {}", text_at(scan, "session"), line));
     }
     return lines;
   }
-  return source_lines({{"solve", folder.kind == "solve" ? folder.id : text_at(folder.document, "solve")},
-                       {"level", folder.level},
-                       {"draft", folder.is_draft},
-                       {"stale", folder.stale}});
+  return source_lines({folder.kind == "solve" ? folder.id : text_at(folder.document, "solve"), folder.level,
+                       folder.is_draft, folder.stale});
 }
 
 Result<Json> provenance_of(const MapFolder& folder) {

@@ -14,6 +14,7 @@
 #include "app/jobs/export/map_planes.h"
 #include "app/jobs/export/prepare.h"
 #include "app/jobs/export/texture_file.h"
+#include "core/field_json.h"
 #include "core/temporary_folder.h"
 
 namespace weft::app {
@@ -245,9 +246,9 @@ Result<std::vector<ExportPrice>> price_exports(const ExportOptions& asked, const
 Json json_of(const std::vector<ExportPrice>& prices) {
   Json rows = Json::array();
   for (const ExportPrice& price : prices) {
-    Json row = {{"file", price.file},          {"encoding", words_of(price.stored)},
-                {"bytes", price.bytes},        {"seconds", price.seconds},
-                {"lost", json_of(price.loss)}, {"chosen", price.is_chosen}};
+    Json row = {
+        {"file", price.file},       {"encoding", words_of(price.stored)}, {"bytes", price.bytes},
+        {"seconds", price.seconds}, {"lost", object_of(price.loss)},      {"chosen", price.is_chosen}};
     if (!price.preset.empty()) row["preset"] = price.preset;
     rows.push_back(std::move(row));
   }

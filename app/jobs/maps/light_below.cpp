@@ -61,13 +61,8 @@ Result<Image<float>> light_of(const Session& session, const Calibration& calibra
   return light;
 }
 
-material::TableGrid grid_of(const Json& rectified) {
-  return {{rectified["width"].get<int>(), rectified["height"].get<int>()},
-          rectified["mm_per_pixel"].get<double>(),
-          rectified["height_mm"].get<double>(),
-          rectified["turn_deg"].get<double>(),
-          rectified["centre_mm"][0].get<double>(),
-          rectified["centre_mm"][1].get<double>()};
+material::TableGrid grid_of(const RectifyFacts& r) {
+  return {r.size, r.mm_per_pixel, r.height_mm, r.turn_deg, r.centre_mm[0], r.centre_mm[1]};
 }
 
 Result<void> check_alike(const Session& cloth, const Session& table) {
@@ -119,7 +114,8 @@ bool has_light_below(const Session& session) {
 }
 
 Result<ThroughCloth> light_through_cloth(const Session& session, const fs::path& bare,
-                                         const Calibration& calibration, const Json& rectified, int threads) {
+                                         const Calibration& calibration, const RectifyFacts& rectified,
+                                         int threads) {
   if (!calibration.response || !calibration.camera)
     return unfit(session, "the calibration has no camera.json or no response.json");
   const Result<Session> table = read_complete_session(bare);

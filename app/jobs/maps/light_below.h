@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "app/jobs/rectify.h"
 #include "core/calibration.h"
 #include "core/image.h"
-#include "core/json_document.h"
 #include "core/result.h"
 #include "core/session.h"
 
@@ -22,9 +22,10 @@ struct ThroughCloth {
 };
 
 /// `bare` is a session of the table without cloth, photographed by the same light and at the same exposure.
-/// Cells of 2 x 2 photosites are read, all colours together. `rectified` is rectify.json. kBadData where one
+/// Cells of 2 x 2 photosites are read, all colours together. kBadData where one
 /// of them has no such photograph or no dark shot, the exposures differ, or the sizes; kNoInput.
 Result<ThroughCloth> light_through_cloth(const Session& session, const std::filesystem::path& bare,
-                                         const Calibration& calibration, const Json& rectified, int threads);
+                                         const Calibration& calibration, const RectifyFacts& rectified,
+                                         int threads);
 
 }  // namespace weft::app

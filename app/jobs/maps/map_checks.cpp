@@ -28,7 +28,7 @@ Result<void> draw_where(const std::filesystem::path& file, const Image<std::uint
 
 }  // namespace
 
-Result<Json> check_maps(MapWork& work, bool has_measured_black) {
+Result<std::vector<MapCheck>> check_maps(MapWork& work, bool has_measured_black) {
   material::MapsToValidate maps;
   maps.surface = &work.surface;
   maps.openness = work.openness.empty() ? View<const float>() : View<const float>(work.openness.plane());
@@ -43,21 +43,17 @@ Result<Json> check_maps(MapWork& work, bool has_measured_black) {
   const Result<std::vector<Finding>> findings = material::validate(maps, limits);
   if (!findings && findings.error().kind == ErrorKind::kBadData) {
     work.verdicts.push_back({"NO_CLOTH", "no pixel is cloth that was solved", findings.error().remedy});
-    return Json::array();
+    return std::vector<MapCheck>();
   }
   if (!findings) return findings.error();
-  Json checks = Json::array();
+  std::vector<MapCheck> checks;
   for (const Finding& finding : *findings) {
-    Json check = {{"name", finding.verdict.name},
-                  {"severity", material::name_of(finding.severity)},
-                  {"number", finding.number},
-                  {"limit", finding.limit},
-                  {"text", finding.verdict.text}};
+    MapCheck check = {finding.verdict.name, finding.severity,     finding.number,
+                      finding.limit,        finding.verdict.text, {}};
     if (finding.severity != Severity::kPassed && !finding.where.empty()) {
-      const std::string picture = "where_" + finding.verdict.name + ".png";
-      if (Result<void> ok = draw_where(work.folder / picture, finding.where); !ok)
+      check.picture = "where_" + finding.verdict.name + ".png";
+      if (Result<void> ok = draw_where(work.folder / check.picture, finding.where); !ok)
         return std::move(ok).error();
-      check["picture"] = picture;
     }
     checks.push_back(std::move(check));
   }

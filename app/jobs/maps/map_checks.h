@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
+#include "app/jobs/maps/map_set_facts.h"
 #include "app/jobs/maps/map_work.h"
-#include "core/json_document.h"
 #include "core/result.h"
-#include "material/validation/validate.h"
 
 namespace weft::app {
 
-/// Whether the maps are those of a cloth and fit to be put on a material (material/validation): a list of
-/// {"name", "severity", "number", "limit", "text"}, with the name of a picture of where for those that did
-/// not pass, whose verdicts are added to the work's. Errors of validate() and of writing pictures.
-Result<Json> check_maps(MapWork& work, bool has_measured_black);
+/// Whether the maps are those of a cloth and fit to be put on a material (material/validation). Those that
+/// did not pass have a picture of where, and their verdicts are added to the work's. Errors of validate() and
+/// of writing pictures.
+Result<std::vector<MapCheck>> check_maps(MapWork& work, bool has_measured_black);
 
 }  // namespace weft::app

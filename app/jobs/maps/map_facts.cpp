@@ -6,23 +6,30 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "core/field_json.h"
+
 namespace weft::app {
 
+void describe(Fields& fields, MapFacts& f) {
+  fields.keep(f.document);
+  fields.value({"name", "Which map", {}, kMustSay}, f.name);
+  fields.value({"file", "Beside it; a map that is one number has none", {}, kUnlessEmpty}, f.file);
+  fields.value({"unit", "Of its values", {}, kUnlessEmpty}, f.unit);
+  fields.value({"channels", "Of the file", {}, kUnlessEmpty}, f.channels);
+  fields.choice({"source", "Solved, computed from what was, or typed", {}, kMustSay}, f.source,
+                kMapSourceNames);
+  fields.value({"constant", "The whole map is this number"}, f.constant);
+  fields.only_if(!f.constant, [&] {
+    fields.value({"least", "Value of the first channel", {}, kOrNull}, f.least);
+    fields.value({"most", "Value of the first channel", {}, kOrNull}, f.most);
+    fields.value({"mean", "Of the first channel", {}, kOrNull}, f.mean);
+  });
+  fields.value({"why", "It is one number, or what it is good for", {}, kUnlessEmpty}, f.why);
+  fields.value({"picture", "A file beside it, for people", {}, kUnlessEmpty}, f.picture);
+}
+
 Json json_of(const MapFacts& facts) {
-  Json json = {{"name", facts.name}};
-  if (!facts.file.empty()) json["file"] = facts.file;
-  if (!facts.unit.empty()) json["unit"] = facts.unit;
-  if (!facts.channels.empty()) json["channels"] = facts.channels;
-  json["source"] = kMapSourceNames[static_cast<std::size_t>(facts.source)];
-  if (facts.constant) {
-    json["constant"] = *facts.constant;
-  } else {
-    json["least"] = facts.least;
-    json["most"] = facts.most;
-    json["mean"] = facts.mean;
-  }
-  if (!facts.why.empty()) json["why"] = facts.why;
-  if (!facts.picture.empty()) json["picture"] = facts.picture;
+  Json json = object_of(facts);
   json.update(facts.more);
   return json;
 }

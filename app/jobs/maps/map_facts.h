@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/fields.h"
 #include "core/image.h"
 #include "core/image_io/image_io.h"
 #include "core/json_document.h"
@@ -31,8 +32,11 @@ struct MapFacts {
   std::optional<double> constant = {};   ///< the map is this number
   std::string why = {};                  ///< it is one number, or what it is good for
   std::string picture = {};              ///< a file beside it; empty: none
-  Json more = Json::object();            ///< what is particular to this map
+  Json more = Json::object();            ///< what is particular to this map, until it is listed
+  Json document = {};                    ///< all that a list says of it
 };
+void describe(Fields& fields, MapFacts& facts);
+/// With `more`.
 Json json_of(const MapFacts& facts);
 
 /// What its file says of itself: weft.source, weft.unit and, above 0, weft.mm_per_pixel.

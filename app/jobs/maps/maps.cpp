@@ -18,6 +18,7 @@
 #include "app/jobs/maps/surface_files.h"
 #include "app/jobs/pictures.h"
 #include "core/calibration.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/session.h"
@@ -34,14 +35,6 @@ namespace fs = std::filesystem;
 using material::Surface;
 
 constexpr int kVersion = 3;  // raised whenever the bytes of a map may change
-
-Json json_of(const DeriveOptions& options) {
-  return {{"height", kHeightMethodNames[static_cast<std::size_t>(options.height)]},
-          {"weighs_by_sigma", options.weighs_by_sigma},
-          {"cavity_mm", options.cavity_mm},
-          {"directions", options.directions},
-          {"cloth", options.cloth}};
-}
 
 // What a session holds, as its session.json tells by the digests of its frames; empty where none is named.
 Result<std::string> digest_of(const fs::path& session) {
@@ -67,7 +60,7 @@ Result<std::optional<material::OpacityFacts>> find_opacity(const MapsOptions& op
       read_calibration(options.calibration.empty() ? session.calibration_folder() : options.calibration);
   if (!calibration) return calibration.error();
   const Result<ThroughCloth> through =
-      light_through_cloth(session, options.bare, *calibration, rectified.document, context.threads);
+      light_through_cloth(session, options.bare, *calibration, rectified.facts, context.threads);
   if (!through) return through.error();
   Result<material::Opacity> opacity = material::opacity_from_transmission(
       {through->share.plane(), through->saturated.plane()}, context.threads);
@@ -77,12 +70,13 @@ Result<std::optional<material::OpacityFacts>> find_opacity(const MapsOptions& op
 }
 
 // Rims of holes are part table: what of them is cloth. Pixels with too little of it have no solution.
-Result<Json> take_table_out(const MapsOptions& options, Surface& surface, int threads) {
-  if (options.table_albedo.empty()) return Json();
+Result<std::optional<TableTakenOut>> take_table_out(const MapsOptions& options, Surface& surface,
+                                                    int threads) {
+  if (options.table_albedo.empty()) return std::optional<TableTakenOut>();
   const std::vector<double>& a = options.table_albedo;
   const Result<material::TableFacts> facts = material::remove_table(surface, {a[0], a[1], a[2]}, threads);
   if (!facts) return facts.error();
-  return Json{{"albedo", a}, {"unmixed", facts->unmixed}, {"left", facts->left}};
+  return std::optional(TableTakenOut{{a[0], a[1], a[2]}, facts->unmixed, facts->left});
 }
 
 // What a photograph by the light below would tell, and does not.
@@ -106,15 +100,19 @@ Result<void> draw_surface(const fs::path& folder, const Surface& surface) {
   return write_png(folder / "relit.png", report::relit_picture(seen, normal, scale));
 }
 
-Json steps_of(const Recipe& recipe, const FinishingFacts& facts) {
-  Json steps = json_of(recipe)["steps"];
-  for (std::size_t i = 0; i < facts.steps.size(); ++i) steps[i]["facts"] = facts.steps[i];
+std::vector<MapStep> steps_of(const Recipe& recipe, const FinishingFacts& facts) {
+  const Json told = json_of(recipe)["steps"];
+  std::vector<MapStep> steps;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    const Json found = i < facts.steps.size() ? facts.steps[i] : Json();
+    steps.push_back({told[i]["do"].get<std::string>(), found, told[i]});
+  }
   return steps;
 }
 
 // What the calibration leaves open of a slope, as the solve says it of most pixels.
 Result<FinishingInput> known_of(const Session& session, const RectifyReport& rectified, bool is_preview) {
-  const Result<Product> solve = find_solve(session.folder, rectified.document["solve"].get<std::string>());
+  const Result<Product> solve = find_solve(session.folder, rectified.facts.source.solve);
   if (!solve) return solve.error();
   const Result<Json> document = read_json(solve->folder / kSolveProduct.document, kSolveProduct.schema, 1);
   if (!document) return document.error();
@@ -158,53 +156,42 @@ Result<void> derive(const std::vector<std::string>& asked, MapWork& work) {
   return {};
 }
 
-Json document_of(const Product& product, const RectifyReport& rectified, const MapsOptions& options,
-                 const FinishingFacts& finished, const MapWork& work, const Json& checks) {
+MapSetFacts facts_of(const Product& product, const RectifyFacts& rectified, const MapsOptions& options,
+                     const FinishingFacts& finished, const MapWork& work) {
   const Surface& surface = work.surface;
-  std::vector<Verdict> verdicts = finished.verdicts;
-  verdicts.insert(verdicts.end(), work.verdicts.begin(), work.verdicts.end());
-  Json maps = Json::array();
-  for (const MapFacts& map : work.made) maps.push_back(json_of(map));
-  return {{"schema", fmt::format("{}/1", kMapsProduct.schema)},
-          {"id", product.id},
-          {"solve", rectified.document["solve"]},
-          {"level", rectified.document["level"]},
-          {"draft", rectified.document["draft"]},
-          {"rectified", rectified.document["id"]},
-          {"width", surface.size().width},
-          {"height", surface.size().height},
-          {"mm_per_pixel", surface.mm_per_pixel},
-          {"is_tile", surface.is_tile},
-          {"preview", options.is_preview},
-          {"steps", steps_of(options.recipe, finished)},
-          {"maps", std::move(maps)},
-          {"derive", json_of(options.derive)},
-          {"checks", checks},
-          {"verdicts", json_of(verdicts)}};
-}
-
-// What is stale today, in place of what was when the document was written.
-void add_stale(const RectifyReport& rectified, Json& document) {
-  document.erase("stale");
-  if (rectified.document.contains("stale")) document["stale"] = rectified.document["stale"];
+  MapSetFacts facts = {.id = product.id,
+                       .source = rectified.source,
+                       .rectified = rectified.id,
+                       .size = surface.size(),
+                       .mm_per_pixel = surface.mm_per_pixel,
+                       .is_tile = surface.is_tile,
+                       .is_preview = options.is_preview,
+                       .steps = steps_of(options.recipe, finished),
+                       .maps = work.made,
+                       .derive = options.derive,
+                       .verdicts = finished.verdicts};
+  for (MapFacts& map : facts.maps) map.document = json_of(map);
+  facts.verdicts.insert(facts.verdicts.end(), work.verdicts.begin(), work.verdicts.end());
+  return facts;
 }
 
 // A set that was there and is asked for again is the newest: exports and materials take it.
-Json asked_for_again(const Product& product, const RectifyReport& rectified, Json document) {
+Result<MapSetFacts> asked_for_again(const Product& product, const RectifyReport& rectified,
+                                    const Json& document) {
+  const fs::path file = product.folder / kMapsProduct.document;
   std::error_code ignored;  // of an archive that cannot be written
-  fs::last_write_time(product.folder / kMapsProduct.document, fs::file_time_type::clock::now(), ignored);
-  for (const char* key : {"level", "draft"}) document[key] = rectified.document[key];
-  add_stale(rectified, document);
-  return document;
+  fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
+  Result<MapSetFacts> facts = read_fields<MapSetFacts>(document, file.string());
+  if (facts) facts->source = rectified.facts.source;
+  return facts;
 }
 
 // Previews are looked at once.
 void remove_previews(const fs::path& parent, const fs::path& but_not) {
   for (const Product& product : list_products(kMapsProduct, parent)) {
-    const Result<Json> document = read_json(product.folder / kMapsProduct.document, kMapsProduct.schema, 1);
+    const Result<MapSetFacts> facts = read_map_set(product.folder);
     std::error_code ignored;
-    if (document && document->value("preview", false) && product.folder != but_not)
-      fs::remove_all(product.folder, ignored);
+    if (facts && facts->is_preview && product.folder != but_not) fs::remove_all(product.folder, ignored);
   }
 }
 
@@ -227,8 +214,7 @@ Result<void> check(const MapsOptions& options) {
 Result<RectifyReport> rectified_for(const MapsOptions& options, const JobContext& context) {
   Result<RectifyReport> rectified = rectified_maps(options, options.mm_per_pixel, context);
   if (!rectified || !options.is_preview) return rectified;
-  const double fine_mm = rectified->document["mm_per_pixel"].get<double>();
-  return rectified_maps(options, kPreviewFactor * fine_mm, context);
+  return rectified_maps(options, kPreviewFactor * rectified->facts.mm_per_pixel, context);
 }
 
 Result<Product> product_wanted(const MapsOptions& options, const Session& session,
@@ -236,10 +222,10 @@ Result<Product> product_wanted(const MapsOptions& options, const Session& sessio
   Result<std::string> bare = digest_of(options.bare);
   if (!bare) return std::move(bare).error();
   const Json inputs = {{"version", kVersion},
-                       {"rectified", rectified.document["id"]},
+                       {"rectified", rectified.facts.id},
                        {"recipe", json_of(options.recipe)},
                        {"maps", options.maps},
-                       {"derive", json_of(options.derive)},
+                       {"derive", object_of(options.derive)},
                        {"bare", *bare},
                        {"table_albedo", options.table_albedo},
                        {"preview", options.is_preview},
@@ -247,11 +233,11 @@ Result<Product> product_wanted(const MapsOptions& options, const Session& sessio
   return product_of(kMapsProduct, inputs, session.folder / "maps", options.output);
 }
 
-// All files of the set, in a folder aside; its document.
-Result<Json> make_set(const MapsOptions& options, const Session& session, const RectifyReport& rectified,
-                      const Product& product, const PartialFolder& aside, const JobContext& context) {
-  Result<RectifiedSurface> read =
-      read_surface(rectified.folder, rectified.document["mm_per_pixel"].get<double>());
+// All files of the set, in a folder aside.
+Result<MapSetFacts> make_set(const MapsOptions& options, const Session& session,
+                             const RectifyReport& rectified, const Product& product,
+                             const PartialFolder& aside, const JobContext& context) {
+  Result<RectifiedSurface> read = read_surface(rectified.folder, rectified.facts.mm_per_pixel);
   if (!read) return std::move(read).error();
   Surface& surface = read->surface;
   if (Result<void> begun = begin(aside, bytes_of_maps(surface.size())); !begun)
@@ -259,7 +245,7 @@ Result<Json> make_set(const MapsOptions& options, const Session& session, const 
   const Result<std::optional<material::OpacityFacts>> opacity =
       find_opacity(options, session, rectified, surface, context);
   if (!opacity) return opacity.error();
-  const Result<Json> table = take_table_out(options, surface, context.threads);
+  const Result<std::optional<TableTakenOut>> table = take_table_out(options, surface, context.threads);
   if (!table) return table.error();
   const Result<FinishingInput> known = known_of(session, rectified, options.is_preview);
   if (!known) return known.error();
@@ -279,7 +265,7 @@ Result<Json> make_set(const MapsOptions& options, const Session& session, const 
                   .compression = options.compression,
                   .options = options.derive,
                   .context = context,
-                  .level = rectified.document["level"].get<std::string>(),
+                  .level = rectified.facts.source.level,
                   .is_colour_changed = changes_colour(options.recipe),
                   .opacity = *opacity,
                   .yarn_px = finished->yarn_px,
@@ -287,16 +273,16 @@ Result<Json> make_set(const MapsOptions& options, const Session& session, const 
   if (Result<void> ok = write_removed(work, *finished); !ok) return std::move(ok).error();
   if (Result<void> ok = derive(options.maps, work); !ok) return std::move(ok).error();
   // A layer of detail has no reflectance that could be checked.
-  const Result<Json> checks =
-      finished->is_detail ? Result<Json>(Json::array()) : check_maps(work, session.dark() != nullptr);
-  if (!checks) return checks.error();
-  Json document = document_of(product, rectified, options, *finished, work, *checks);
-  if (!table->is_null()) document["table"] = *table;
-  add_stale(rectified, document);
-  if (Result<void> ok = write_maps_page(aside.path(), document); !ok) return std::move(ok).error();
-  if (Result<void> ok = write_json(aside.path() / kMapsProduct.document, document); !ok)
+  Result<std::vector<MapCheck>> checks = std::vector<MapCheck>();
+  if (!finished->is_detail) checks = check_maps(work, session.dark() != nullptr);
+  if (!checks) return std::move(checks).error();
+  MapSetFacts facts = facts_of(product, rectified.facts, options, *finished, work);
+  facts.checks = std::move(*checks);
+  facts.table = *table;
+  if (Result<void> ok = write_maps_page(aside.path(), facts); !ok) return std::move(ok).error();
+  if (Result<void> ok = write_json(aside.path() / kMapsProduct.document, json_of(facts)); !ok)
     return std::move(ok).error();
-  return document;
+  return facts;
 }
 
 }  // namespace
@@ -323,15 +309,17 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
   Result<std::optional<Json>> found = find_finished(*product);
   if (!found) return std::move(found).error();
   if (*found) {
-    return MapsReport{product->folder, true, asked_for_again(*product, *rectified, std::move(**found))};
+    Result<MapSetFacts> facts = asked_for_again(*product, *rectified, **found);
+    if (!facts) return std::move(facts).error();
+    return MapsReport{product->folder, true, std::move(*facts)};
   }
   PartialFolder partial(product->folder);
-  Result<Json> document = make_set(options, *session, *rectified, *product, partial, context);
-  if (!document) return std::move(document).error();
+  Result<MapSetFacts> facts = make_set(options, *session, *rectified, *product, partial, context);
+  if (!facts) return std::move(facts).error();
   if (Result<void> ok = partial.publish(); !ok) return std::move(ok).error();
   if (options.is_preview) remove_previews(session->folder / "maps", product->folder);
   context.progress("maps", 1);
-  return MapsReport{product->folder, false, std::move(*document)};
+  return MapsReport{product->folder, false, std::move(*facts)};
 }
 
 }  // namespace weft::app

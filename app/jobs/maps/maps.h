@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/jobs/maps/map_set_facts.h"
 #include "app/jobs/maps/map_work.h"
 #include "app/jobs/maps/recipe.h"
 #include "app/jobs/rectify.h"
@@ -16,9 +17,6 @@
 #include "core/result.h"
 
 namespace weft::app {
-
-inline constexpr ProductKind kMapsProduct = {"weft.maps", "maps.json", "set of maps",
-                                             "make it first with weft maps"};
 
 struct MapsOptions {
   std::filesystem::path session;
@@ -44,7 +42,7 @@ inline constexpr double kPreviewFactor = 4;
 struct MapsReport {
   std::filesystem::path folder;
   bool was_there = false;  ///< a complete one of the same solve, recipe and options was found
-  Json document;           ///< maps.json, with what is stale of the solve today
+  MapSetFacts facts;       ///< with what is stale of the solve today
 };
 
 /// The maps of the solve on a grid of pixels of this size, none: what the camera sees. Errors of

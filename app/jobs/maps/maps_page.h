@@ -3,13 +3,13 @@
 
 #include <filesystem>
 
-#include "core/json_document.h"
+#include "app/jobs/maps/map_set_facts.h"
 #include "core/result.h"
 
 namespace weft::app {
 
 /// report.html of a set of maps (weft.maps/1): what speaks against it, each map with its picture, range and
 /// source, and what each step of the recipe found. The pictures are in `folder`.
-Result<void> write_maps_page(const std::filesystem::path& folder, const Json& document);
+Result<void> write_maps_page(const std::filesystem::path& folder, const MapSetFacts& facts);
 
 }  // namespace weft::app

@@ -95,8 +95,7 @@ std::size_t chosen_of(const std::vector<MapPrice>& prices, const PriceAims& aims
 Result<MapPrices> price_maps(const MapsOptions& options, const PriceAims& aims, const JobContext& context) {
   const Result<RectifyReport> rectified = rectified_maps(options, options.mm_per_pixel, context);
   if (!rectified) return rectified.error();
-  const Result<RectifiedSurface> read =
-      read_surface(rectified->folder, rectified->document["mm_per_pixel"].get<double>());
+  const Result<RectifiedSurface> read = read_surface(rectified->folder, rectified->facts.mm_per_pixel);
   if (!read) return read.error();
   const Surface& surface = read->surface;
   const Result<Surface> piece = piece_of(surface);

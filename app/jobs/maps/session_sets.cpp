@@ -7,24 +7,22 @@
 #include <tuple>
 #include <utility>
 
-#include "app/jobs/maps/maps.h"
-
 namespace weft::app {
 namespace {
 
-bool has_maps(const Json& document, const std::vector<std::string>& wanted) {
-  const Json maps = document.value("maps", Json::array());
+bool has_maps(const MapSetFacts& facts, const std::vector<std::string>& wanted) {
   return std::ranges::all_of(wanted, [&](const std::string& name) {
-    return std::ranges::any_of(maps, [&](const Json& map) { return text_at(map, "name") == name; });
+    return std::ranges::find(facts.maps, name, &MapFacts::name) != facts.maps.end();
   });
 }
 
-SessionSet set_of(const library::SessionSolves& solves, Product product, Json document) {
-  const std::string solve = text_at(document, "solve");
-  const library::ChoosableSolve* const found = solves.find(solve);
-  SessionSet set = {std::move(product), std::move(document), {}, false, why_stale(solves, solve)};
-  set.level = found != nullptr ? found->level : text_at(set.document, "level");
-  set.is_draft = found != nullptr ? found->is_preview() : flag_at(set.document, "draft");
+SessionSet set_of(const library::SessionSolves& solves, Product product, MapSetFacts facts) {
+  const library::SourceFacts& source = facts.source;
+  const library::ChoosableSolve* const found = solves.find(source.solve);
+  SessionSet set = {std::move(product), {}, {}, false, why_stale(solves, source.solve)};
+  set.level = found != nullptr ? found->level : source.level;
+  set.is_draft = found != nullptr ? found->is_preview() : source.is_draft;
+  set.facts = std::move(facts);
   return set;
 }
 
@@ -42,9 +40,9 @@ bool flag_at(const Json& document, const char* key) {
 std::vector<SessionSet> sets_of(const library::SessionSolves& solves, bool of_previews) {
   std::vector<SessionSet> sets;
   for (Product& product : list_products(kMapsProduct, solves.session / "maps")) {
-    Result<Json> document = read_json(product.folder / kMapsProduct.document, kMapsProduct.schema, 1);
-    if (document && (of_previews || !flag_at(*document, "preview")))
-      sets.push_back(set_of(solves, std::move(product), std::move(*document)));
+    Result<MapSetFacts> facts = read_map_set(product.folder);
+    if (facts && (of_previews || !facts->is_preview))
+      sets.push_back(set_of(solves, std::move(product), std::move(*facts)));
   }
   return sets;
 }
@@ -53,8 +51,8 @@ const SessionSet* set_to_use(const library::SessionSolves& solves, const std::ve
                              const std::vector<std::string>& wanted) {
   const library::ChoosableSolve* const current = solves.current_one();
   const auto order_of = [&](const SessionSet& set) {
-    const bool is_of_current = current != nullptr && text_at(set.document, "solve") == current->id;
-    return std::tuple(!set.is_draft, is_of_current, has_maps(set.document, wanted));
+    const bool is_of_current = current != nullptr && set.facts.source.solve == current->id;
+    return std::tuple(!set.is_draft, is_of_current, has_maps(set.facts, wanted));
   };
   const SessionSet* best = nullptr;
   for (const SessionSet& set : sets) {
@@ -74,15 +72,20 @@ std::string how_to_make_better(const library::SessionSolves& solves) {
                      is_chosen ? " --solve " + best->id : "");
 }
 
-std::vector<std::string> source_lines(const Json& document) {
-  const std::string level = text_at(document, "level"), solve = text_at(document, "solve");
+std::vector<std::string> source_lines(const library::SourceFacts& source) {
   std::vector<std::string> lines = {
-      fmt::format("from the {}{}solve {}", level, level.empty() ? "" : " ", solve)};
-  if (flag_at(document, "draft")) lines.back() += ", a draft of half the size and without masks";
-  for (const Json& why : document.value("stale", Json::array())) {
-    if (why.is_string()) lines.push_back(fmt::format("stale: {}", why.get<std::string>()));
-  }
+      fmt::format("from the {}{}solve {}", source.level, source.level.empty() ? "" : " ", source.solve)};
+  if (source.is_draft) lines.back() += ", a draft of half the size and without masks";
+  for (const std::string& why : source.stale) lines.push_back(fmt::format("stale: {}", why));
   return lines;
+}
+
+library::SourceFacts source_in(const Json& scan) {
+  library::SourceFacts source = {text_at(scan, "solve"), text_at(scan, "level"), flag_at(scan, "draft"), {}};
+  for (const Json& why : scan.is_object() ? scan.value("stale", Json::array()) : Json::array()) {
+    if (why.is_string()) source.stale.push_back(why.get<std::string>());
+  }
+  return source;
 }
 
 }  // namespace weft::app

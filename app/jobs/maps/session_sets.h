@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/jobs/maps/map_set_facts.h"
 #include "core/json_document.h"
 #include "core/product.h"
 #include "core/result.h"
@@ -22,7 +23,7 @@ bool flag_at(const Json& document, const char* key);
 /// A set of maps with what is known of its solve.
 struct SessionSet {
   Product product;
-  Json document;
+  MapSetFacts facts;
   std::string level;               ///< of its solve; empty: nobody knows
   bool is_draft = false;           ///< of a preview
   std::vector<std::string> stale;  ///< why it is not what would be made today, a sentence each
@@ -40,6 +41,8 @@ const SessionSet* set_to_use(const library::SessionSolves& solves, const std::ve
 std::string how_to_make_better(const library::SessionSolves& solves);
 
 /// "from the standard solve 0123456789abcdef", then why that is stale.
-std::vector<std::string> source_lines(const Json& document);
+std::vector<std::string> source_lines(const library::SourceFacts& source);
+/// What a list of scans says of one; empty where it does not.
+library::SourceFacts source_in(const Json& scan);
 
 }  // namespace weft::app

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "app/jobs/export_facts.h"
+#include "app/jobs/maps/map_set_facts.h"
+#include "app/jobs/rectify.h"
 #include "app/jobs/sets/photograph_set.h"
 #include "batch/outcome.h"
 #include "batch/plan.h"
@@ -33,6 +36,10 @@ const std::vector<DocumentSchema>& document_schemas() {
       {"weft.lights", "lights.json of a calibration", fields_of<LightsPart>},
       {"weft.set", "set.json: photographs for a step of a calibration", fields_of<PhotographSet>},
       {"weft.solve", "solve.json: what a solve was made of and says of itself", fields_of<SolveFacts>},
+      {"weft.rectified", "rectify.json: maps of a solve on a square grid of the table",
+       fields_of<RectifyFacts>},
+      {"weft.maps", "maps.json: a set of maps", fields_of<MapSetFacts>},
+      {"weft.export", "export.json: the files of a preset", fields_of<ExportFacts>},
       {"weft.batch", "The first line of a plan", fields_of<batch::Header>},
       {"weft.batch-session", "A line of a plan: a session that is solved", fields_of<batch::Job>, false},
       {"weft.batch-left-out", "A line of a plan: a session that is not", fields_of<batch::LeftOut>, false},

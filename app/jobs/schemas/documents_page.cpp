@@ -36,6 +36,16 @@ std::string kind_of(const Json& schema) {
     return fmt::format("{}", fmt::join(words, ", "));
   }
   const Json type = schema.value("type", Json());
+  if (type.is_array()) {
+    std::vector<std::string> kinds;
+    for (const Json& each : type) {
+      Json one = schema;
+      one["type"] = each;
+      kinds.push_back(each == "null" ? "null" : kind_of(one));
+    }
+    std::erase(kinds, "");
+    return fmt::format("{}", fmt::join(kinds, " or "));
+  }
   if (type == "array") return list_words(schema);
   if (type == "string") return "text";
   if (type == "boolean") return "true, false";

@@ -51,10 +51,10 @@ Error no_such_export(const std::string& name) {
           "see the list of exports"};
 }
 
-Result<Json> export_json(const fs::path& folder, const std::string& preset) {
+Result<ExportFacts> one_export(const fs::path& folder, const std::string& preset) {
   if (!library::is_session_name(preset) || !is_there(folder / preset / kExportProduct.document))
     return no_such_export(preset);
-  return read_json(folder / preset / kExportProduct.document, kExportProduct.schema, 1);
+  return read_export(folder / preset);
 }
 
 Result<Reply> list_of(const fs::path& folder) {
@@ -65,13 +65,13 @@ Result<Reply> list_of(const fs::path& folder) {
   std::ranges::sort(names);
   Json list = Json::array();
   for (const std::string& name : names) {
-    Result<Json> document = export_json(folder, name);
-    if (!document) continue;
+    Result<ExportFacts> facts = one_export(folder, name);
+    if (!facts) continue;
     list.push_back({{"preset", name},
                     {"folder", (folder / name).string()},
                     {"created", written_at(folder / name / kExportProduct.document)},
                     {"bytes", library::bytes_below(folder / name)},
-                    {"document", std::move(*document)}});
+                    {"document", std::move(facts->document)}});
   }
   return json_reply({{"exports", std::move(list)}});
 }
@@ -84,24 +84,23 @@ std::string name_in_header(const std::string& file) {
   return name;
 }
 
-// The digest of a file that the document lists: a texture, or a document of textures.
-Result<std::string> digest_of(const Json& document, const std::string& name) {
-  JsonFields fields(document, kExportProduct.document);
-  for (const char* list : {"files", "documents"}) {
-    for (const Json& file : fields.list(list)) {
-      JsonFields each(file, kExportProduct.document);
-      if (each.text("file") == name && each.status()) return each.text("sha256");
-    }
+// The digest of a file that is listed: a texture, or a document of textures.
+Result<std::string> digest_of(const ExportFacts& facts, const std::string& name) {
+  for (const ExportedFile& each : facts.files) {
+    if (each.file == name) return each.sha256;
+  }
+  for (const WrittenDocument& each : facts.documents) {
+    if (each.name == name) return each.sha256;
   }
   return no_such_export(name);
 }
 
 Result<Reply> file_of(const fs::path& folder, const std::string& preset, const std::string& asked) {
-  const Result<Json> document = export_json(folder, preset);
-  if (!document) return document.error();
+  const Result<ExportFacts> facts = one_export(folder, preset);
+  if (!facts) return facts.error();
   std::string name = asked;
   std::ranges::replace(name, kFolderMark, '/');
-  Result<std::string> digest = digest_of(*document, name);
+  Result<std::string> digest = digest_of(*facts, name);
   if (!digest) return std::move(digest).error();
   const fs::path file = folder / preset / name;
   if (!library::lies_in(file, folder / preset)) return no_such_export(asked);

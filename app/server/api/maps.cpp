@@ -14,27 +14,31 @@
 namespace weft::app {
 namespace {
 
-// What a list says of a set of maps; null where its document is damaged.
+template <typename Named>
+Json names_of(const std::vector<Named>& all) {
+  Json names = Json::array();
+  for (const Named& each : all) names.push_back(each.name);
+  return names;
+}
+
+// What a list says of a set of maps.
 Json set_summary(const SessionSet& set) {
   const Product& product = set.product;
-  const Json& document = set.document;
-  JsonFields fields(document, kMapsProduct.document);
-  const auto is_so = [&](const char* key) { return document.value(key, Json()) == Json(true); };
-  Json summary = {{"id", product.id},
-                  {"created", written_at(product.folder / kMapsProduct.document)},
-                  {"bytes", library::bytes_below(product.folder)},
-                  {"solve", fields.text("solve")},
-                  {"level", set.level},
-                  {"draft", set.is_draft},
-                  {"stale", set.stale},
-                  {"preview", is_so("preview")},
-                  {"is_tile", is_so("is_tile")},
-                  {"width", fields.integer("width")},
-                  {"height", fields.integer("height")},
-                  {"mm_per_pixel", fields.number("mm_per_pixel")},
-                  {"maps", names_in(document, "maps")},
-                  {"warnings", names_in(document, "verdicts")}};
-  return fields.status() ? summary : Json();
+  const MapSetFacts& facts = set.facts;
+  return {{"id", product.id},
+          {"created", written_at(product.folder / kMapsProduct.document)},
+          {"bytes", library::bytes_below(product.folder)},
+          {"solve", facts.source.solve},
+          {"level", set.level},
+          {"draft", set.is_draft},
+          {"stale", set.stale},
+          {"preview", facts.is_preview},
+          {"is_tile", facts.is_tile},
+          {"width", facts.size.width},
+          {"height", facts.size.height},
+          {"mm_per_pixel", facts.mm_per_pixel},
+          {"maps", names_of(facts.maps)},
+          {"warnings", names_of(facts.verdicts)}};
 }
 
 Result<Reply> sets(const RigParts& parts, const Call& call) {
@@ -44,9 +48,7 @@ Result<Reply> sets(const RigParts& parts, const Call& call) {
   const std::vector<SessionSet> all = sets_of(solves, true), finals = sets_of(solves);
   const SessionSet* const current = set_to_use(solves, finals, {});
   Json list = Json::array();
-  for (const SessionSet& set : all) {
-    if (Json summary = set_summary(set); !summary.is_null()) list.push_back(std::move(summary));
-  }
+  for (const SessionSet& set : all) list.push_back(set_summary(set));
   std::ranges::reverse(list);
   return json_reply(
       {{"sets", std::move(list)}, {"current", current != nullptr ? Json(current->product.id) : Json()}});

@@ -15,6 +15,7 @@
 #include "app/server/api/library_materials.h"
 #include "app/server/api/tile_query.h"
 #include "core/camera.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/iso_time.h"
 #include "core/lights.h"
@@ -176,15 +177,14 @@ Result<Viewed> find_map_set(const RigParts& parts, const std::string& name, cons
   const Result<Product> product = find_product(kMapsProduct, map_sets_of(viewed.session), id);
   Result<Json> document = finished(product, "there is no such set of maps", id);
   if (!document) return std::move(document).error();
-  JsonFields fields(*document, kMapsProduct.document);
-  const std::string solve = fields.text("solve");
-  viewed.mm_per_pixel = fields.number("mm_per_pixel");
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  const Result<MapSetFacts> facts = read_fields<MapSetFacts>(*document, kMapsProduct.document);
+  if (!facts) return facts.error();
+  viewed.mm_per_pixel = facts->mm_per_pixel;
   viewed.folder = product->folder;
   viewed.id = product->id;
   viewed.content = "maps-" + product->id;
   viewed.set = std::move(*document);
-  viewed.solve = solve_facts_of(viewed.session, solve);
+  viewed.solve = solve_facts_of(viewed.session, facts->source.solve);
   if (Result<void> ok = add_layers(viewed); !ok) return std::move(ok).error();
   return viewed;
 }

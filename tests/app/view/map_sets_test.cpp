@@ -31,7 +31,7 @@ class MapSets : public AskedSession {
     options.maps = {"height", "occlusion"};
     const Result<MapsReport> made = make_maps(options, {});
     ASSERT_TRUE(made) << made.error().message();
-    set_ = made->document;
+    set_ = json_of(made->facts);
     set_folder_ = made->folder;
   }
   void SetUp() override {
@@ -122,6 +122,9 @@ TEST_F(MapSets, RefuseWhatIsNotThereAndWhatIsDamaged) {
   EXPECT_EQ(get("sessions/asked/maps/0123456789abcdef").status, 422);
   EXPECT_EQ(get("sessions/asked/maps").json()["sets"].size(), 1U) << "a damaged one is passed over";
   document["solve"] = "gone";
+  document["verdicts"] = Json::array();
+  document["maps"] =
+      Json::array({{{"name", "far"}, {"file", "../far.exr"}, {"channels", {"Y"}}, {"source", "derived"}}});
   ASSERT_TRUE(write_json(damaged / "maps.json", document));
   const Json seen = get("sessions/asked/maps/0123456789abcdef").json();
   EXPECT_EQ(seen["albedo_scale"], "relative") << "whose solve is gone";

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/jobs/export_facts.h"
 #include "app/server/api/batch_place.h"
 #include "app/server/http/error_json.h"
 #include "core/files.h"
@@ -354,12 +355,10 @@ TEST_F(OpenApi, DescribesWhatLeaves) {
   ASSERT_TRUE(write_file(folder / "maps" / "a.png", "texels"));
   ASSERT_TRUE(write_file(folder / "secret.txt", "none of theirs"));
   const std::string digest = sha256_of("texels");
-  const Json document = {{"schema", "weft.export/1"},
-                         {"files",
-                          {{{"file", "maps/a.png"}, {"sha256", digest}, {"bytes", 6}},
-                           {{"file", "../../session.json"}, {"sha256", digest}, {"bytes", 6}}}},
-                         {"documents", Json::array()}};
-  ASSERT_TRUE(write_json(folder / "export.json", document));
+  ExportFacts facts = {.id = "a", .preset = "glb", .name = "a", .size = {2, 2}};
+  for (const char* name : {"maps/a.png", "../../session.json"})
+    facts.files.push_back({.file = name, .sha256 = digest, .bytes = 6, .size = {2, 2}});
+  ASSERT_TRUE(write_json(folder / "export.json", json_of(facts)));
   const Json listed = conforming("GET", of, here).json()["exports"];
   ASSERT_EQ(listed.size(), 1U);
   EXPECT_EQ(listed[0]["preset"], "glb");
