@@ -92,8 +92,8 @@ void describe(Fields& fields, SolveFacts& f) {
                f.solver_version);
   fields.value({"method", "That solved it", {}, kMustSay}, f.method);
   fields.choice({"compression", "Of its EXR files", {}, kMustSay}, f.compression, kCompressionNames);
-  fields.value({"input", "All that it depends on: files by SHA-256, calibration, lights", {}, kUnlessEmpty},
-               f.input);
+  fields.object({"input", "All that it depends on: files by SHA-256, calibration, lights", {}, kUnlessEmpty},
+                f.input);
   fields.value({"lights", "How many there are", {}, kMustSay}, f.lights);
   fields.value({"width", "Of the maps, pixels", {}, kMustSay}, f.size.width);
   fields.value({"height", "Of the maps, pixels", {}, kMustSay}, f.size.height);
@@ -103,19 +103,20 @@ void describe(Fields& fields, SolveFacts& f) {
   fields.value({"pixels", "With a solution", {}, kMustSay}, f.pixels);
   fields.object({"status", "Pixels by bit of status.png", {}, kMustSay}, f.status);
   fields.object({"solved_by", "Pixels by arithmetic", {}, kUnlessEmpty}, f.solved_by);
-  fields.value({"conditions", "Of the session", {}, kUnlessEmpty}, f.conditions);
+  fields.object({"conditions", "Of the session", {}, kUnlessEmpty}, f.conditions);
   fields.list({"registration", "How far each shot had moved"}, f.registration);
-  fields.value({"sigma_normal_deg", "Of the predicted angle, degrees", {}, kUnlessEmpty}, f.sigma_normal_deg);
+  fields.object({"sigma_normal_deg", "Of the predicted angle, degrees", {}, kUnlessEmpty},
+                f.sigma_normal_deg);
   fields.object({"check", "How well light that was left out is predicted", {}, kUnlessEmpty}, f.check);
-  fields.value({"sharpening", "Where the lens's spread was undone", {}, kUnlessEmpty}, f.sharpening);
-  fields.value({"lateral_color", "Where it was taken out", {}, kUnlessEmpty}, f.lateral_color);
+  fields.object({"sharpening", "Where the lens's spread was undone", {}, kUnlessEmpty}, f.sharpening);
+  fields.object({"lateral_color", "Where it was taken out", {}, kUnlessEmpty}, f.lateral_color);
   fields.list({"warnings", "What speaks against it"}, f.warnings);
   fields.value({"pictures", "Files in its folder"}, f.pictures);
   fields.list({"gates", "Of the level reference: whether there was anything to gain", {}, kUnlessEmpty},
               f.gates);
-  fields.value({"reference", "What that level took out", {}, kUnlessEmpty}, f.reference);
-  fields.value({"reflectance", "Of the levels robust and reference: the lobe", {}, kUnlessEmpty},
-               f.reflectance);
+  fields.object({"reference", "What that level took out", {}, kUnlessEmpty}, f.reference);
+  fields.object({"reflectance", "Of the levels robust and reference: the lobe", {}, kUnlessEmpty},
+                f.reflectance);
   fields.object({"error", "Against a truth", {}, kUnlessEmpty}, f.error);
   fields.object({"foretold", "Where a price was asked before", {}, kUnlessEmpty}, f.foretold);
   fields.object({"taken", "What it gave and took; since 1.1", {}, kUnlessEmpty}, f.taken);

@@ -16,6 +16,7 @@
 #include "core/left_out_facts.h"
 #include "core/product.h"
 #include "core/result.h"
+#include "core/solve_parts.h"
 #include "core/solve_record.h"
 #include "core/verdict.h"
 
@@ -125,14 +126,13 @@ struct SolveFacts {
   std::optional<std::vector<RegisteredShot>> registration;
   std::vector<GateFacts> gates;  ///< of the level `reference`
 
-  // Kept for people and passed on to the report; no program looks into them. Null where there is none.
-  Json input;             ///< all that the id depends on besides method and compression
-  Json conditions;        ///< docs/formats.md
-  Json sigma_normal_deg;  ///< docs/formats.md
-  Json sharpening;        ///< where the spread of the lens is known
-  Json lateral_color;     ///< where it was taken out
-  Json reference;         ///< of the level `reference`
-  Json reflectance;       ///< of the levels `robust` and `reference`
+  std::optional<SolveInput> input;
+  std::optional<ConditionFacts> conditions;
+  std::optional<SigmaFacts> sigma_normal_deg;
+  std::optional<SharpeningFacts> sharpening;       ///< where the spread of the lens is known
+  std::optional<LateralColorFacts> lateral_color;  ///< where it was taken out
+  std::optional<ReferenceLevelFacts> reference;    ///< of the level `reference`
+  std::optional<ReflectanceSummary> reflectance;   ///< of the levels `robust` and `reference`
 };
 
 void describe(Fields& fields, SolveFacts& facts);

@@ -81,7 +81,8 @@ void print_words(const SolveReport& report) {
                     facts.size.pixels(), facts.lights, name_of(facts.albedo_scale)));
   if (facts.taken) print_price(*facts.taken, facts.foretold);
   print("  pixels by status:" + status_words(facts.status));
-  if (facts.reflectance.contains("family")) print("  gloss: " + reflectance_words(facts.reflectance));
+  if (facts.reflectance && !facts.reflectance->lobe.family.empty())
+    print("  gloss: " + reflectance_words(*facts.reflectance));
   const SolveSeconds& s = report.seconds;
   print(fmt::format(
       "  {:.2f} s: read {:.2f}, prepare {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, report {:.2f}, "

@@ -138,12 +138,11 @@ LevelSeconds scaled(const SolveSeconds& cut, const SharedSeconds& shared, Size f
 }
 
 // What the reference level takes out of the readings, and why, as solve.json says it.
-std::string words_of(const Json& reference, const std::vector<GateFacts>& gates) {
+std::string words_of(const ReferenceLevelFacts& reference, const std::vector<GateFacts>& gates) {
   std::string words;
-  for (const Json& stage : reference.at("stages")) {
-    words += fmt::format("{}{}", words.empty() ? "takes out " : ", ", stage.get<std::string>());
-  }
-  const bool was_tried = !reference.at("left_out").empty();
+  for (const std::string& stage : reference.stages)
+    words += fmt::format("{}{}", words.empty() ? "takes out " : ", ", stage);
+  const bool was_tried = !reference.left_out.empty();
   if (words.empty())
     words = was_tried ? "left-out light is predicted no better without its effects" : "gates shut";
   const char* before = ": ";
@@ -156,12 +155,11 @@ std::string words_of(const Json& reference, const std::vector<GateFacts>& gates)
 }
 
 // What looking for the cloth's lobe came to in the cut.
-std::string gloss_words(const Json& reflectance) {
-  if (reflectance.is_null()) return "";
-  const std::string words = lobes_in_words(reflectance);
-  return words.empty()
-             ? fmt::format("gloss of the middle: no lobe ({})", reflectance.at("said").get<std::string>())
-             : "gloss of the middle: " + words;
+std::string gloss_words(const std::optional<ReflectanceSummary>& reflectance) {
+  if (!reflectance) return "";
+  const std::string words = lobes_in_words(*reflectance);
+  return words.empty() ? fmt::format("gloss of the middle: no lobe ({})", reflectance->lobe.said)
+                       : "gloss of the middle: " + words;
 }
 
 void add_note(const std::string& words, LevelPrice& level) {
@@ -226,7 +224,7 @@ Result<Priced> price_level(const Photographs& photographs, const solver::MethodN
   priced.price = {*level.level, cut->expected, scaled(cut->seconds, shared, photographs.size, is_half), ""};
   if (level.level == solver::Level::kReference) {
     priced.gates = list_of(cut->facts.gates);
-    priced.notes.push_back(words_of(cut->facts.reference, cut->facts.gates));
+    priced.notes.push_back(words_of(*cut->facts.reference, cut->facts.gates));
   }
   priced.notes.push_back(gloss_words(cut->facts.reflectance));
   return priced;

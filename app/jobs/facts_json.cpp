@@ -17,11 +17,16 @@ const char* verdict_of(const pipeline::ShotShift& shot, bool found) {
   return shot.verdict == pipeline::ShiftVerdict::kFlagged ? "flagged" : "still";
 }
 
-Json names_of(const pipeline::LightStages& stages) {
-  Json names = Json::array();
-  if (stages.shadows) names.push_back("shadows");
-  if (stages.interreflection) names.push_back("interreflection");
+std::vector<std::string> names_of(const pipeline::LightStages& stages) {
+  std::vector<std::string> names;
+  if (stages.shadows) names.emplace_back("shadows");
+  if (stages.interreflection) names.emplace_back("interreflection");
   return names;
+}
+
+template <typename Gain>
+LeftOutGain gain_of(const Gain& gain) {
+  return {gain.mean, gain.sigma, static_cast<std::int64_t>(gain.patches)};
 }
 
 }  // namespace
@@ -38,38 +43,27 @@ SolvedBy facts_of(const solver::SolveTally& tally) {
           tally.unsolved,  tally.rejected_readings};
 }
 
-Json json_of(const pipeline::DeblurFacts& facts) {
-  return {{"sigma_px", facts.sigma_px}, {"share", facts.mean_share}};
+SharpeningFacts facts_of(const pipeline::DeblurFacts& facts) {
+  return {facts.sigma_px, facts.mean_share};
 }
 
-Json json_of(const pipeline::ReferenceFacts& facts) {
-  Json rounds = Json::array(), left_out = Json::array();
+ReferenceLevelFacts facts_of(const pipeline::ReferenceFacts& facts) {
+  ReferenceLevelFacts said = {.stages = names_of(facts.stages),
+                              .rounds = {},
+                              .left_out = {},
+                              .albedo_scale_is_open = facts.choice.scale_is_open,
+                              .published = facts.robust_is_published ? "robust" : "reference",
+                              .over_robust = gain_of(facts.over_robust),
+                              .shadow_reach_is_capped = facts.shadow_reach_is_capped};
   for (const pipeline::ReferenceRound& round : facts.rounds) {
-    rounds.push_back({{"turned_deg", round.turned_deg},
-                      {"stages", names_of(round.stages)},
-                      {"albedo_scale", round.stages.albedo_scale},
-                      {"slope_residual_rms", round.slope_residual_rms},
-                      {"refused", round.is_refused}});
+    said.rounds.push_back({round.turned_deg, names_of(round.stages), round.stages.albedo_scale,
+                           round.slope_residual_rms, round.is_refused});
   }
   for (const auto& [name, gain] : {std::pair{"shadows", facts.choice.shadows},
                                    std::pair{"interreflection", facts.choice.interreflection}}) {
-    if (gain.patches == 0) continue;
-    left_out.push_back({{"stage", name},
-                        {"gain", gain.mean},
-                        {"sigma", gain.sigma},
-                        {"patches", gain.patches},
-                        {"kept", gain.keeps()}});
+    if (gain.patches > 0) said.left_out.push_back({name, gain_of(gain), gain.keeps()});
   }
-  return {{"stages", names_of(facts.stages)},
-          {"rounds", std::move(rounds)},
-          {"left_out", std::move(left_out)},
-          {"albedo_scale_is_open", facts.choice.scale_is_open},
-          {"published", facts.robust_is_published ? "robust" : "reference"},
-          {"over_robust",
-           {{"gain", facts.over_robust.mean},
-            {"sigma", facts.over_robust.sigma},
-            {"patches", facts.over_robust.patches}}},
-          {"shadow_reach_is_capped", facts.shadow_reach_is_capped}};
+  return said;
 }
 
 std::vector<std::string> warnings_of(const pipeline::ReferenceFacts& facts) {

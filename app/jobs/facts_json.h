@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
 #include "core/solve.h"
 #include "pipeline/deblur.h"
 #include "pipeline/reference.h"
@@ -19,12 +18,8 @@ namespace weft::app {
 std::vector<GateFacts> facts_of(const solver::Gates& gates);
 SolvedBy facts_of(const solver::SolveTally& tally);
 
-/// {"sigma_px", "share"}.
-Json json_of(const pipeline::DeblurFacts& facts);
-
-/// {"stages", "rounds", "left_out", "albedo_scale_is_open", "published", "over_robust",
-/// "shadow_reach_is_capped"}.
-Json json_of(const pipeline::ReferenceFacts& facts);
+SharpeningFacts facts_of(const pipeline::DeblurFacts& facts);
+ReferenceLevelFacts facts_of(const pipeline::ReferenceFacts& facts);
 
 /// What the reference level could not do, a sentence each.
 std::vector<std::string> warnings_of(const pipeline::ReferenceFacts& facts);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/fields.h"
 #include "core/json_document.h"
 #include "core/result.h"
 
@@ -14,13 +15,31 @@ namespace weft::app {
 inline constexpr const char* kCheckResultFile = "result.json";
 inline constexpr const char* kCheckResultSchema = "weft.calibration-check";
 
+/// What result.json says of a check (weft.calibration-check/1).
+struct CheckResult {
+  std::string date;  ///< of the evidence, ISO 8601
+  std::string of;    ///< "sheets" or "session"
+  std::string rig, calibration;
+  bool passed = false;
+  Json numbers = Json::object();  ///< of its report
+};
+void describe(Fields& fields, CheckResult& result);
+/// Reads it from a folder. kNoInput, kBadData.
+Result<CheckResult> read_check_result(const std::filesystem::path& folder);
+
+/// That normals are off by the lights' movement, as far as a check could tell.
+struct CheckCost {
+  std::optional<double> mean_deg = {}, worst_deg = {};
+};
+void describe(Fields& fields, CheckCost& cost);
+
 /// What a check said.
 struct LastCheck {
   std::filesystem::path folder;
   std::string date;  ///< ISO 8601
   bool passed = false;
-  std::optional<double> mean_deg, worst_deg;  ///< that normals are off, as far as it could tell
-  std::string passed_last;                    ///< date of the newest one that passed; empty: none did
+  CheckCost cost;
+  std::string passed_last;  ///< date of the newest one that passed; empty: none did
 };
 
 /// The newest result of a check of the calibration of this id that lies beside its folder, at most two levels

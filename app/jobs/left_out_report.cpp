@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/field_json.h"
 #include "core/percent.h"
 
 namespace weft::app {
@@ -62,10 +61,7 @@ std::optional<Verdict> verdict_of(const LeftOutFacts& facts, bool of_session,
   return verdict;
 }
 
-report::Section left_out_section(const Json& report, const std::string& noun) {
-  const auto found = report.find("check");
-  if (found == report.end()) return {};
-  const Result<LeftOutFacts> facts = read_fields<LeftOutFacts>(*found, "check");
+report::Section left_out_section(const std::optional<LeftOutFacts>& facts, const std::string& noun) {
   if (!facts) return {};
   report::Table table = {{"", "median", "by noise", "rms", "by noise"}};
   table.rows.push_back(row_of("all", facts->all));

@@ -26,8 +26,8 @@ inline constexpr double kOverNoise = 3;
 std::optional<Verdict> verdict_of(const LeftOutFacts& facts, bool of_session,
                                   std::optional<solver::Level> level);
 
-/// A section of report.html from "check" of report.json; empty where there is none. `noun` is LED or Light.
-report::Section left_out_section(const Json& report, const std::string& noun);
+/// A section of report.html; empty of none. `noun` is LED or Light.
+report::Section left_out_section(const std::optional<LeftOutFacts>& facts, const std::string& noun);
 
 /// Lines for the terminal.
 std::string left_out_words(const LeftOutFacts& facts);

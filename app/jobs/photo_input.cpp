@@ -170,7 +170,6 @@ Result<PhotoPlan> plan_photos(const PhotoOptions& options) {
                  fmt::format("{} photographs; a normal and an albedo are three unknowns", plan.files.size()),
                  "give at least three photographs under different lights"};
   }
-  Json inputs = Json::array();
   for (std::size_t k = 0; k < plan.files.size(); ++k) {
     const Result<ImageFileInfo> info = read_linear_image_info(plan.files[k]);
     if (!info) return info.error();
@@ -190,17 +189,15 @@ Result<PhotoPlan> plan_photos(const PhotoOptions& options) {
     const Result<std::string> digest = sha256_of_file(plan.files[k]);
     if (!digest) return digest.error();
     const DistantLight& light = plan.lights.lights[k];
-    inputs.push_back({{"file", plan.files[k].filename().string()},
-                      {"sha256", *digest},
-                      {"direction", {light.direction.x, light.direction.y, light.direction.z}},
-                      {"irradiance_rgb", light.irradiance_rgb}});
+    plan.input.photographs.push_back(
+        {plan.files[k].filename().string(), *digest, light.direction, light.irradiance_rgb});
   }
-  plan.description = {{"photographs", std::move(inputs)}, {"transfer", name_of(plan.transfer)}};
+  plan.input.transfer = name_of(plan.transfer);
   if (!plan.mask.empty()) {
     if (const auto mask = read_mask(plan.mask, plan.size); !mask) return mask.error();
     const Result<std::string> digest = sha256_of_file(plan.mask);
     if (!digest) return digest.error();
-    plan.description["mask"] = *digest;
+    plan.input.mask = *digest;
   }
   return plan;
 }

@@ -9,6 +9,7 @@
 #include "core/job.h"
 #include "core/lights.h"
 #include "core/result.h"
+#include "core/solve_parts.h"
 #include "pipeline/photographs.h"
 
 namespace weft::app {
@@ -34,7 +35,7 @@ struct PhotoPlan {
   Size size;
   Transfer transfer = Transfer::kLinear;  ///< kAuto: files differ, and each is taken by its own kind
   Clipped clipped = Clipped::kMark;
-  Json description;
+  SolveInput input;  ///< for solve.json, and what the id of the solve is made of
 };
 
 Result<PhotoPlan> plan_photos(const PhotoOptions& options);

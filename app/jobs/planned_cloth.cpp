@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "app/jobs/reflectance_facts.h"
+#include "core/field_json.h"
 #include "core/json_document.h"
 #include "core/vec.h"
 
@@ -45,22 +47,24 @@ std::optional<LobeFamily> family_called(const std::string& name) {
   return {};
 }
 
-Result<Lobe> lobe_of(const Json& cluster, const std::filesystem::path& file, double albedo) {
-  JsonFields fields(cluster, file.string() + ": clusters");
-  const std::string name = fields.text("family");
-  const std::optional<LobeFamily> family = family_called(name);
+Result<Lobe> lobe_of(const LobeCluster& cluster, const std::filesystem::path& file, double albedo) {
+  const FittedLobe& said = cluster.lobe;
+  const std::optional<LobeFamily> family = family_called(said.family);
+  const bool has_strength = said.f0 || cluster.f0_over_albedo;
+  const bool is_whole =
+      said.alpha && has_strength && (family != LobeFamily::kTwoGgx || (said.alpha_broad && said.broad_share));
+  if (!is_whole) return not_a_lobe(file, "its roughness or f0 is missing");
   Lobe lobe;
-  lobe.alpha = fields.number("alpha");
-  lobe.f0 = fields.has("f0") ? fields.number("f0") : albedo * fields.number("f0_over_albedo");
-  const double along = fields.optional_number("alpha_along").value_or(lobe.alpha);
-  lobe.axis = radians(fields.optional_number("axis_deg").value_or(0));
-  lobe.bend = fields.optional_number("bend").value_or(0);
+  lobe.alpha = *said.alpha;
+  lobe.f0 = said.f0 ? *said.f0 : albedo * *cluster.f0_over_albedo;
+  const double along = said.alpha_along.value_or(lobe.alpha);
+  lobe.axis = radians(said.axis_deg.value_or(0));
+  lobe.bend = said.bend.value_or(0);
   if (family == LobeFamily::kTwoGgx) {
-    lobe.broad = fields.number("alpha_broad");
-    lobe.broad_share = fields.number("broad_share");
+    lobe.broad = *said.alpha_broad;
+    lobe.broad_share = *said.broad_share;
   }
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  if (!family) return not_a_lobe(file, "a lobe of the family \"" + name + "\" is not planned for");
+  if (!family) return not_a_lobe(file, "a lobe of the family \"" + said.family + "\" is not planned for");
   if (!(lobe.alpha >= 0.02 && lobe.alpha <= 1 && along >= 0.001 && along <= 20 && lobe.f0 >= 0 &&
         lobe.f0 <= 0.6 && lobe.broad >= 0.02 && lobe.broad <= 1 && lobe.broad_share >= 0 &&
         lobe.broad_share <= 1))
@@ -90,20 +94,14 @@ std::vector<std::string> planned_cloth_names() {
 Result<NamedCloth> cloth_of_reflectance(const std::filesystem::path& file, std::optional<double> albedo) {
   Result<Json> document = read_json(file, "weft.reflectance", 1);
   if (!document) return std::move(document).error();
-  JsonFields fields(*document, file.string());
-  const Json clusters = fields.list("clusters");
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  const auto cluster = std::ranges::find_if(clusters, [](const Json& each) {
-    const auto seen = each.is_object() ? each.find("observable") : each.end();
-    return seen != each.end() && seen->is_boolean() && seen->get<bool>();
-  });
-  if (cluster == clusters.end()) return not_a_lobe(file, "the solve called nothing observable");
+  const Result<ReflectanceFacts> facts = read_fields<ReflectanceFacts>(*document, file.string());
+  if (!facts) return facts.error();
+  const auto cluster = std::ranges::find(facts->clusters, true, &LobeCluster::is_observable);
+  if (cluster == facts->clusters.end()) return not_a_lobe(file, "the solve called nothing observable");
   const double of_pixels = albedo.value_or(kUnknownAlbedo);
   const Result<Lobe> lobe = lobe_of(*cluster, file, of_pixels);
   if (!lobe) return lobe.error();
-  const auto share = cluster->find("weft_share");
-  const double weft = share != cluster->end() && share->is_number() ? share->get<double>() : 0;
-  return cloth_by(name_of(lobe->family), *lobe, of_pixels, weft);
+  return cloth_by(name_of(lobe->family), *lobe, of_pixels, cluster->weft_share.value_or(0));
 }
 
 }  // namespace weft::app

@@ -151,45 +151,31 @@ struct Speaker {
   }
 };
 
-const char* name_of(FaultKind kind) {
-  switch (kind) {
-    case FaultKind::kExchanged:
-      return "exchanged";
-    case FaultKind::kDead:
-      return "dead";
-    case FaultKind::kGain:
-      return "gain";
-  }
-  return "";
+FaultFacts facts_of(const Fault& fault, const Speaker& say) {
+  return {.kind = fault.kind,
+          .lights = say.numbers(fault.lights),
+          .shown_by = say.numbers(fault.shown_by),
+          .value = fault.value,
+          .sigma = fault.sigma,
+          .residual_before = fault.residual_before,
+          .residual_after = fault.residual_after,
+          .moved_deg = fault.moved_deg,
+          .confidence = fault.agreement};
 }
 
-Json fault_json(const Fault& fault, const Speaker& say) {
-  Json json = {{"kind", name_of(fault.kind)}, {"lights", say.numbers(fault.lights)}};
-  if (fault.kind == FaultKind::kExchanged) json["shown_by"] = say.numbers(fault.shown_by);
-  if (fault.kind != FaultKind::kExchanged) json["value"] = number(fault.value);
-  if (fault.kind == FaultKind::kGain) json["sigma"] = number(fault.sigma);
-  if (fault.kind != FaultKind::kDead) {
-    json["residual_before"] = number(fault.residual_before);
-    json["residual_after"] = number(fault.residual_after);
-    json["moved_deg"] = number(fault.moved_deg);
-  }
-  json["confidence"] = number(fault.agreement);
-  return json;
-}
-
-Json light_json(const solver::LightEvidence& light, int number_of_light) {
-  return {{"light", number_of_light},
-          {"residual_rms", number(light.residual_rms)},
-          {"residual_median", number(light.residual_median)},
-          {"residual_mean", number(light.residual_mean)},
-          {"gain", number(light.gain)},
-          {"gain_range", number(light.gain_range)},
-          {"saturated", number(light.saturated)},
-          {"shadowed", number(light.shadowed)},
-          {"missing", number(light.missing)},
-          {"outlier", number(light.outlier)},
-          {"gradient", number(light.gradient)},
-          {"gradient_share", number(light.gradient_share)}};
+LightFacts facts_of(const solver::LightEvidence& light, int number_of_light) {
+  return {.light = number_of_light,
+          .residual_rms = light.residual_rms,
+          .residual_median = light.residual_median,
+          .residual_mean = light.residual_mean,
+          .gain = light.gain,
+          .gain_range = light.gain_range,
+          .saturated = light.saturated,
+          .shadowed = light.shadowed,
+          .missing = light.missing,
+          .outlier = light.outlier,
+          .gradient = light.gradient,
+          .gradient_share = light.gradient_share};
 }
 
 // Of the maps' pixels.
@@ -198,28 +184,27 @@ double share_with(const SolveFacts& solve, StatusBit bit) {
 }
 
 // Where the error comes from: what is known of each source, in its own unit.
-Json budget_of(const PhotographsSummary& photographs, const MapSummary& maps, const SolveFacts& solve) {
-  Json budget = Json::array();
-  const auto add = [&](const char* source, const std::string& what, const Json& value, const char* unit) {
-    if (value.is_number()) {
-      budget.push_back({{"source", source}, {"what", what}, {"value", value}, {"unit", unit}});
-    }
+std::vector<ErrorSource> budget_of(const PhotographsSummary& photographs, const SigmaFacts& sigma,
+                                   const SolveFacts& solve) {
+  std::vector<ErrorSource> budget;
+  const auto add = [&](const char* source, const std::string& what, double value, const char* unit) {
+    if (std::isfinite(value)) budget.push_back({source, what, value, unit});
   };
   const char* noise = photographs.noise_is_known ? "photon and read noise" : "scatter of the readings";
-  for (const auto& [source, sigma] : {std::pair{noise, maps.sigma_noise_deg()},
-                                      {"what the model leaves out", maps.sigma_model_deg()},
-                                      {"calibration", maps.sigma_calibration_deg()}}) {
-    if (!sigma.is_null()) add(source, "median predicted angle of the normal", sigma["median"], "deg");
+  for (const auto& [source, part] : {std::pair{noise, sigma.noise},
+                                     {"what the model leaves out", sigma.model},
+                                     {"calibration", sigma.calibration}}) {
+    if (part) add(source, "median predicted angle of the normal", part->median, "deg");
   }
   for (const Fault& fault : photographs.diagnosis.faults) {
     if (fault.kind == FaultKind::kDead) continue;
     const Speaker say = {photographs};
     add(fault.kind == FaultKind::kGain ? "gain of a light" : "exchanged lights",
         fmt::format("{} put right would turn half of the normals by more", say.name(fault.lights)),
-        number(fault.moved_deg), "deg");
+        fault.moved_deg, "deg");
   }
   add("cloth unlike the model", "median deviation of the readings, over the albedo",
-      number(percent(photographs.diagnosis.left)), "percent");
+      percent(photographs.diagnosis.left), "percent");
   const auto share = [&](const char* source, const char* what, StatusBit bit) {
     add(source, what, percent(share_with(solve, bit)), "percent");
   };
@@ -229,10 +214,11 @@ Json budget_of(const PhotographsSummary& photographs, const MapSummary& maps, co
   return budget;
 }
 
-// {"median", "p95"}, or null where nothing was added.
-Json middle_of(const AngleHistogram& angles) {
+// None where nothing was added.
+std::optional<AngleMiddle> middle_of(const AngleHistogram& angles) {
   const double median = angles.quantile(0.5);
-  return std::isfinite(median) ? Json({{"median", median}, {"p95", angles.quantile(0.95)}}) : Json();
+  if (!std::isfinite(median)) return std::nullopt;
+  return AngleMiddle{median, angles.quantile(0.95)};
 }
 
 }  // namespace
@@ -291,18 +277,6 @@ void MapSummary::add(const pipeline::MapBand& band, View<const float> normal_deg
   }
 }
 
-Json MapSummary::sigma_noise_deg() const {
-  return middle_of(noise_);
-}
-
-Json MapSummary::sigma_model_deg() const {
-  return middle_of(model_);
-}
-
-Json MapSummary::sigma_calibration_deg() const {
-  return middle_of(calibration_);
-}
-
 std::string share_in_words(double share) {
   return share < 1 && share >= 0.995 ? "over 99 %" : percent_words(share) + " %";
 }
@@ -320,28 +294,30 @@ ExpectedError MapSummary::expected() const {
           cloth_ > 0 ? static_cast<double>(solved_) / static_cast<double>(cloth_) : 0};
 }
 
-Json MapSummary::sigma_facts() const {
-  Json facts = middle_of(sum_);
-  for (const auto& [part, angles] :
-       {std::pair{"noise", &noise_}, {"model", &model_}, {"calibration", &calibration_}}) {
-    if (Json of_part = middle_of(*angles); !of_part.is_null()) facts[part] = std::move(of_part);
+SigmaFacts MapSummary::sigma_facts() const {
+  SigmaFacts facts = {.noise = middle_of(noise_),
+                      .model = middle_of(model_),
+                      .calibration = middle_of(calibration_),
+                      .solved = expected().solved};
+  if (const std::optional<AngleMiddle> all = middle_of(sum_)) {
+    facts.median = all->median;
+    facts.p95 = all->p95;
   }
   return facts;
 }
 
-Json MapSummary::sigma_normal_deg() const {
+SigmaMap MapSummary::sigma_map() const {
   const Image<float>& means = sigma_.averages();
-  Json grid = Json::array();
+  SigmaMap map = {.median = sum_.quantile(0.5),
+                  .p95 = sum_.quantile(0.95),
+                  .solved = expected().solved,
+                  .square_px = sigma_.square(),
+                  .columns = means.width(),
+                  .rows = means.height()};
   for (int y = 0; y < means.height(); ++y) {
-    for (int x = 0; x < means.width(); ++x) grid.push_back(number(means(x, y)));
+    for (int x = 0; x < means.width(); ++x) map.grid.push_back(number(means(x, y)));
   }
-  return {{"median", number(sum_.quantile(0.5))},
-          {"p95", number(sum_.quantile(0.95))},
-          {"solved", expected().solved},
-          {"square_px", sigma_.square()},
-          {"columns", means.width()},
-          {"rows", means.height()},
-          {"grid", std::move(grid)}};
+  return map;
 }
 
 LightCondition condition_over(const LightField& field, Size size) {
@@ -360,10 +336,6 @@ LightCondition condition_over(const LightField& field, Size size) {
   }
   const double worst = *std::ranges::max_element(conditions);
   return {median(std::move(conditions)), worst};
-}
-
-Json json_of(const LightCondition& condition) {
-  return {{"median", number(condition.median)}, {"worst", number(condition.worst)}};
 }
 
 PhotographsSummary summarize_photographs(const pipeline::Photographs& photographs,
@@ -496,55 +468,49 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
   return verdicts;
 }
 
-Json report_document(const std::string& title, const SolveFacts& solve, const PhotographsSummary& photographs,
-                     const MapSummary& maps, const Json& seconds) {
+SolveReportFacts report_facts(const std::string& title, const SolveFacts& solve,
+                              const PhotographsSummary& photographs, const MapSummary& maps,
+                              const Json& seconds) {
   const solver::Diagnosis& diagnosis = photographs.diagnosis;
   const Speaker say = {photographs};
-  Json shares = Json::object(), lights = Json::array(), faults = Json::array();
-  for (const StatusName& s : kStatusNames) shares[s.name] = share_with(solve, s.bit);
-  for (std::size_t k = 0; k < diagnosis.lights.size(); ++k) {
-    lights.push_back(light_json(diagnosis.lights[k], photographs.numbers[k]));
-  }
-  for (const Fault& fault : diagnosis.faults) faults.push_back(fault_json(fault, say));
-
-  Json report = {{"schema", "weft.solve-report/1"},
-                 {"title", title},
-                 {"of", photographs.of_session ? "session" : "photographs"},
-                 {"id", solve.id},
-                 {"method", solve.method},
-                 {"width", solve.size.width},
-                 {"height", solve.size.height},
-                 {"albedo_scale", name_of(solve.albedo_scale)},
-                 {"pixels", solve.pixels},
-                 {"warnings", json_of(solve.warnings)},
-                 {"status", std::move(shares)},
-                 {"looked_at", diagnosis.pixels},
-                 {"outshining", photographs.outshining},
-                 {"residual", number(diagnosis.residual)},
-                 {"residual_explained", number(diagnosis.left)},
-                 {"lights", std::move(lights)},
-                 {"faults", std::move(faults)},
-                 {"budget", budget_of(photographs, maps, solve)},
-                 {"condition", json_of(photographs.condition)},
-                 {"sigma_normal_deg", maps.sigma_normal_deg()}};
-  for (auto& [name, sigma] : {std::pair{"sigma_noise_deg", maps.sigma_noise_deg()},
-                              {"sigma_model_deg", maps.sigma_model_deg()},
-                              {"sigma_calibration_deg", maps.sigma_calibration_deg()}}) {
-    if (!sigma.is_null()) report[name] = sigma;
-  }
-  if (solve.check) report["check"] = object_of(*solve.check);
-  if (solve.error) report["error"] = object_of(*solve.error);
-  if (!solve.gates.empty()) report["gates"] = list_of(solve.gates);
-  if (solve.registration && !solve.registration->empty())
-    report["registration"] = list_of(*solve.registration);
-  if (!solve.sharpening.is_null()) report["sharpening"] = solve.sharpening;
-  if (!solve.lateral_color.is_null()) report["lateral_color"] = solve.lateral_color;
-  if (!solve.conditions.empty()) report["conditions"] = solve.conditions;
-  report["seconds"] = seconds;
+  const SigmaFacts sigma = maps.sigma_facts();
+  SolveReportFacts report = {.title = title,
+                             .is_of_photographs = !photographs.of_session,
+                             .id = solve.id,
+                             .method = solve.method,
+                             .size = solve.size,
+                             .albedo_scale = solve.albedo_scale,
+                             .pixels = solve.pixels,
+                             .warnings = solve.warnings,
+                             .looked_at = static_cast<std::int64_t>(diagnosis.pixels),
+                             .outshining = photographs.outshining,
+                             .residual = diagnosis.residual,
+                             .residual_explained = diagnosis.left,
+                             .budget = budget_of(photographs, sigma, solve),
+                             .condition = photographs.condition,
+                             .sigma_normal_deg = maps.sigma_map(),
+                             .sigma_noise_deg = sigma.noise,
+                             .sigma_model_deg = sigma.model,
+                             .sigma_calibration_deg = sigma.calibration,
+                             .check = solve.check,
+                             .error = solve.error,
+                             .gates = solve.gates,
+                             .registration = solve.registration.value_or(std::vector<RegisteredShot>()),
+                             .sharpening = solve.sharpening,
+                             .lateral_color = solve.lateral_color,
+                             .conditions = solve.conditions,
+                             .seconds = seconds,
+                             .foretold = solve.foretold};
+  for (std::size_t i = 0; i < kStatusNames.size(); ++i)
+    report.status.shares[i] = share_with(solve, kStatusNames[i].bit);
+  for (std::size_t k = 0; k < diagnosis.lights.size(); ++k)
+    report.lights.push_back(facts_of(diagnosis.lights[k], photographs.numbers[k]));
+  for (const Fault& fault : diagnosis.faults) report.faults.push_back(facts_of(fault, say));
+  if (report.conditions && object_of(*report.conditions).empty()) report.conditions.reset();
   return report;
 }
 
-Result<void> write_report(const fs::path& folder, const Json& report) {
+Result<void> write_report(const fs::path& folder, const SolveReportFacts& report) {
   constexpr std::array<std::pair<const char*, const char*>, 6> kPreviews = {
       {{"albedo.png", "albedo"},
        {"normal.png", "normal"},
@@ -559,7 +525,7 @@ Result<void> write_report(const fs::path& folder, const Json& report) {
     if (!png) return std::move(png).error();
     pictures.push_back({label, report::Png{std::move(*png)}});
   }
-  if (Result<void> ok = write_json(folder / "report.json", report); !ok) return ok;
+  if (Result<void> ok = write_json(folder / "report.json", json_of(report)); !ok) return ok;
   return write_file(folder / "report.html", report_page(report, pictures));
 }
 

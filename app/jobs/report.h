@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/jobs/report_facts.h"
 #include "core/json_document.h"
 #include "core/result.h"
 #include "core/solve.h"
@@ -62,17 +63,10 @@ class MapSummary {
   void add(const pipeline::MapBand& band, View<const float> normal_deg,
            View<const float> calibration_deg = {});
 
-  /// {"median", "p95", "solved", "square_px", "columns", "rows", "grid"} of the predicted angle in degrees,
-  /// of the share of the cloth that is solved; the grid's values are means of squares, row by row, null where
-  /// there is none. "median" is null where no pixel has an angle.
-  Json sigma_normal_deg() const;
-  /// {"median", "p95"} of the part of that angle that noise makes, the model, and the calibration's
-  /// covariance, in degrees; null where there is none.
-  Json sigma_noise_deg() const;
-  Json sigma_model_deg() const;
-  Json sigma_calibration_deg() const;
-  /// {"median", "p95"} of the angle, and of its parts as "noise", "model" and "calibration": solve.json.
-  Json sigma_facts() const;
+  /// Of the share of the cloth that is solved.
+  SigmaMap sigma_map() const;
+  /// The angle and its parts: of noise, of the model, and of the calibration's covariance.
+  SigmaFacts sigma_facts() const;
   ExpectedError expected() const;
 
  private:
@@ -82,13 +76,7 @@ class MapSummary {
   std::int64_t cloth_ = 0, solved_ = 0;  // pixels
 };
 
-/// Condition number of the lights over the frame; infinite where they do not span three directions.
-struct LightCondition {
-  double median = 0, worst = 0;
-};
 LightCondition condition_over(const LightField& field, Size size);
-/// {"median", "worst"}; null where it is infinite.
-Json json_of(const LightCondition& condition);
 
 /// What the report says of the photographs, gathered while they are in memory.
 struct PhotographsSummary {
@@ -141,10 +129,11 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
                                  std::optional<solver::Level> level);
 
 /// report.json from solve.json and seconds by phase. Nothing but "seconds" differs from run to run.
-Json report_document(const std::string& title, const SolveFacts& solve, const PhotographsSummary& photographs,
-                     const MapSummary& maps, const Json& seconds);
+SolveReportFacts report_facts(const std::string& title, const SolveFacts& solve,
+                              const PhotographsSummary& photographs, const MapSummary& maps,
+                              const Json& seconds);
 
 /// Writes report.json and report.html into the folder of a solve, with the previews that are there.
-Result<void> write_report(const std::filesystem::path& folder, const Json& report);
+Result<void> write_report(const std::filesystem::path& folder, const SolveReportFacts& report);
 
 }  // namespace weft::app

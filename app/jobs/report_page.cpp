@@ -16,9 +16,8 @@
 namespace weft::app {
 namespace {
 
-double number(const Json& object, const char* key, double otherwise = 0) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number() ? found->get<double>() : otherwise;
+double number(double value, double otherwise = 0) {
+  return std::isfinite(value) ? value : otherwise;
 }
 
 std::string percent_text(double share) {
@@ -28,45 +27,42 @@ std::string percent_text(double share) {
   return fmt::format(fmt::runtime(p < 1 ? "{:.2f} %" : "{:.1f} %"), p);
 }
 
-std::string light_noun(const Json& report) {
-  return report.value("of", "session") == "session" ? "LED" : "Light";
+std::string light_noun(const SolveReportFacts& report) {
+  return report.is_of_photographs ? "Light" : "LED";
 }
 
 // The lights that a fault names.
-std::set<int> named(const Json& report) {
+std::set<int> named(const SolveReportFacts& report) {
   std::set<int> numbers;
-  for (const Json& fault : report["faults"]) {
-    for (const Json& n : fault["lights"]) numbers.insert(n.get<int>());
-  }
+  for (const FaultFacts& fault : report.faults) numbers.insert(fault.lights.begin(), fault.lights.end());
   return numbers;
 }
 
-std::string meta(const Json& report) {
-  return fmt::format("solved by {} from {} lights · {} × {} pixels · {} albedo · {}",
-                     report.value("method", ""), report["lights"].size(), report.value("width", 0),
-                     report.value("height", 0), report.value("albedo_scale", "relative"),
-                     report.value("id", ""));
+std::string meta(const SolveReportFacts& report) {
+  return fmt::format("solved by {} from {} lights · {} × {} pixels · {} albedo · {}", report.method,
+                     report.lights.size(), report.size.width, report.size.height,
+                     name_of(report.albedo_scale), report.id);
 }
 
 // What is said where nothing is to be warned of.
-std::string all_is_well(const Json& report) {
-  if (report.value("looked_at", 0) == 0)
+std::string all_is_well(const SolveReportFacts& report) {
+  if (report.looked_at == 0)
     return "No pixel was bright and lit enough to hold the lights against each other.";
-  if (report["lights"].size() < 6)
+  if (report.lights.size() < 6)
     return "Nothing stands out. Six lights are needed to hold them against each other; here each was taken "
            "at its word.";
   return fmt::format(
       "Nothing stands out: half of the pixels agree with the model to {} of the albedo or better, and no "
       "light contradicts its calibration.",
-      percent_text(number(report, "residual_explained")));
+      percent_text(number(report.residual_explained)));
 }
 
-report::Section residuals(const Json& report) {
+report::Section residuals(const SolveReportFacts& report) {
   const std::set<int> alarm = named(report);
   report::Table table;
-  for (const Json& light : report["lights"]) {
-    const int n = light.value("light", 0);
-    const double size = number(light, "residual_median");
+  for (const LightFacts& light : report.lights) {
+    const int n = light.light;
+    const double size = number(light.residual_median);
     if (alarm.count(n) != 0) table.alarms.insert(table.rows.size());
     table.rows.push_back({fmt::format("{} {}", light_noun(report), n), percent_text(size)});
     table.bars.push_back(size);
@@ -79,11 +75,12 @@ report::Section residuals(const Json& report) {
           .is_half = true};
 }
 
-report::Section states(const Json& report) {
+report::Section states(const SolveReportFacts& report) {
   report::Table table;
-  for (const auto& [name, share] : report["status"].items()) {
-    table.rows.push_back({name, percent_text(share.get<double>())});
-    table.bars.push_back(std::clamp(share.get<double>(), 0.0, 1.0));
+  for (std::size_t i = 0; i < kStatusNames.size(); ++i) {
+    const double share = report.status.shares[i];
+    table.rows.push_back({kStatusNames[i].name, percent_text(share)});
+    table.bars.push_back(std::clamp(share, 0.0, 1.0));
   }
   return {.title = "Pixels by state",
           .table = std::move(table),
@@ -92,57 +89,55 @@ report::Section states(const Json& report) {
 }
 
 // Predicted angle of the normal over the frame, in squares.
-report::Section sigma_map(const Json& report) {
-  const Json& sigma = report["sigma_normal_deg"];
-  if (!sigma["median"].is_number()) return {};
-  report::FrameMap map = {sigma.value("columns", 0), sigma.value("rows", 0), {}, "°"};
-  for (const Json& v : sigma["grid"]) map.values.push_back(v.is_number() ? v.get<double>() : NAN);
+report::Section sigma_map(const SolveReportFacts& report) {
+  const SigmaMap& sigma = report.sigma_normal_deg;
+  if (!std::isfinite(sigma.median)) return {};
+  report::FrameMap map = {sigma.columns, sigma.rows, {}, "°"};
+  for (const Json& v : sigma.grid) map.values.push_back(v.is_number() ? v.get<double>() : NAN);
   report::Section section = {
       .title = "How well the lights fix the normal", .figures = {{"", std::move(map)}}, .is_half = true};
   section.note = fmt::format(
       "Median {:.3g}°, 95 percent below {:.3g}°. Both hold for the {} of the cloth that has a normal.",
-      number(sigma, "median"), number(sigma, "p95"), share_in_words(number(sigma, "solved", 1)));
-  if (const Json condition = report.value("condition", Json::object()); number(condition, "median") > 0) {
-    section.note += fmt::format(" Condition number of all lights {:.2f}, at worst {:.2f}.",
-                                number(condition, "median"), number(condition, "worst", INFINITY));
+      sigma.median, number(sigma.p95), share_in_words(sigma.solved));
+  if (const LightCondition& condition = report.condition; number(condition.median) > 0) {
+    section.note += fmt::format(" Condition number of all lights {:.2f}, at worst {:.2f}.", condition.median,
+                                number(condition.worst, INFINITY));
   }
   return section;
 }
 
-report::Section budget(const Json& report) {
+report::Section budget(const SolveReportFacts& report) {
   report::Table table;
-  for (const Json& b : report["budget"]) {
-    const double value = number(b, "value");
-    table.rows.push_back(
-        {fmt::format("{}\n{}", b.value("source", ""), b.value("what", "")),
-         b.value("unit", "") == "deg" ? fmt::format("{:.3g}°", value) : percent_text(value / 100)});
+  for (const ErrorSource& b : report.budget) {
+    table.rows.push_back({fmt::format("{}\n{}", b.source, b.what),
+                          b.unit == "deg" ? fmt::format("{:.3g}°", b.value) : percent_text(b.value / 100)});
   }
-  if (const auto error = report.find("error"); error != report.end()) {
-    table.rows.push_back({fmt::format("all of it\nmean error against the truth; 95 percent below {:.2f}°",
-                                      number(*error, "p95_deg")),
-                          fmt::format("{:.3g}°", number(*error, "mean_deg"))});
+  if (const auto& error = report.error) {
+    table.rows.push_back(
+        {fmt::format("all of it\nmean error against the truth; 95 percent below {:.2f}°", error->p95_deg),
+         fmt::format("{:.3g}°", error->mean_deg)});
   }
   return {.title = "Where the error comes from", .table = std::move(table), .is_half = true};
 }
 
-report::Section light_table(const Json& report) {
+report::Section light_table(const SolveReportFacts& report) {
   const std::set<int> alarm = named(report);
   report::Table table = {{"", "rms residual", "its mean", "gain", "in shadow", "saturated", "missing",
                           "outliers", "change over the frame"}};
-  for (const Json& light : report["lights"]) {
-    const int n = light.value("light", 0);
+  for (const LightFacts& light : report.lights) {
+    const int n = light.light;
     const bool is_named = alarm.count(n) != 0;
     // Very many lights are not listed but for those that are named.
-    if (report["lights"].size() > 24 && !is_named) continue;
+    if (report.lights.size() > 24 && !is_named) continue;
     if (is_named) table.alarms.insert(table.rows.size());
     table.rows.push_back({fmt::format("{} {}", light_noun(report), n),
-                          percent_text(number(light, "residual_rms")),
-                          fmt::format("{:+.2f} %", 100 * number(light, "residual_mean")),
-                          fmt::format("{:.1f} %", 100 * number(light, "gain", 1)),
-                          percent_text(number(light, "shadowed")), percent_text(number(light, "saturated")),
-                          percent_text(number(light, "missing")), percent_text(number(light, "outlier")),
-                          fmt::format("{:.1f} % ({:.0f} %)", 100 * number(light, "gradient"),
-                                      100 * number(light, "gradient_share"))});
+                          percent_text(number(light.residual_rms)),
+                          fmt::format("{:+.2f} %", 100 * number(light.residual_mean)),
+                          fmt::format("{:.1f} %", 100 * number(light.gain, 1)),
+                          percent_text(number(light.shadowed)), percent_text(number(light.saturated)),
+                          percent_text(number(light.missing)), percent_text(number(light.outlier)),
+                          fmt::format("{:.1f} % ({:.0f} %)", 100 * number(light.gradient),
+                                      100 * number(light.gradient_share))});
   }
   return {
       .title = "Light by light",
@@ -150,63 +145,60 @@ report::Section light_table(const Json& report) {
       .note = fmt::format("From {} pixels all over the frame. Gain: what the light gives of what the other "
                           "lights let expect, named faults put right. A residual that changes over the frame "
                           "and explains much of its variance (in brackets) hints that a light has moved.",
-                          report.value("looked_at", 0))};
+                          report.looked_at)};
 }
 
-report::Section registration(const Json& report) {
+report::Section registration(const SolveReportFacts& report) {
   report::Table table = {{"", "right, px", "down, px", "turn", "sigma, px", "costs", ""}};
-  for (const Json& shot : report.value("registration", Json::array())) {
-    table.rows.push_back(
-        {fmt::format("LED {}", shot.value("led", 0)), fmt::format("{:+.3f}", number(shot, "dx_px")),
-         fmt::format("{:+.3f}", number(shot, "dy_px")), fmt::format("{:+.4f}°", number(shot, "turn_deg")),
-         fmt::format("{:.3f}", number(shot, "sigma_px")), fmt::format("{:.3f}°", number(shot, "cost_deg")),
-         shot.value("verdict", "")});
+  for (const RegisteredShot& shot : report.registration) {
+    table.rows.push_back({fmt::format("LED {}", shot.led), fmt::format("{:+.3f}", number(shot.dx_px)),
+                          fmt::format("{:+.3f}", number(shot.dy_px)),
+                          fmt::format("{:+.4f}°", number(shot.turn_deg)),
+                          fmt::format("{:.3f}", number(shot.sigma_px)),
+                          fmt::format("{:.3f}°", number(shot.cost_deg)), shot.verdict});
   }
   return {.title = "How the cloth lay in each shot", .table = std::move(table)};
 }
 
-report::Section conditions(const Json& report) {
+report::Section conditions(const SolveReportFacts& report) {
   report::Table table;
-  report::add_rows(table, report.value("conditions", Json::object()));
+  if (report.conditions) report::add_rows(table, object_of(*report.conditions));
   return {.title = "Conditions", .table = std::move(table), .is_half = true};
 }
 
-report::Section gates(const Json& report) {
-  const Json found = report.value("gates", Json::array());
+report::Section gates(const SolveReportFacts& report) {
   report::Table table = {{"stage", "measured", "limit", "verdict"}};
-  for (const Json& gate : found) {
-    const std::string unit = gate.value("unit", "");
-    table.rows.push_back({gate.value("name", ""), fmt::format("{:.3g} {}", number(gate, "value"), unit),
-                          fmt::format("{:.3g} {}", number(gate, "limit"), unit), gate.value("verdict", "")});
+  for (const GateFacts& gate : report.gates) {
+    table.rows.push_back({gate.name, fmt::format("{:.3g} {}", number(gate.value), gate.unit),
+                          fmt::format("{:.3g} {}", number(gate.limit), gate.unit),
+                          gate.is_over ? "over" : "under"});
   }
   return {.title = "Gates", .table = std::move(table), .is_half = true};
 }
 
-report::Section time(const Json& report) {
+report::Section time(const SolveReportFacts& report) {
   report::Table table;
-  for (const auto& [phase, seconds] : report["seconds"].items()) {
+  for (const auto& [phase, seconds] : report.seconds.items()) {
     table.rows.push_back({phase, fmt::format("{:.2f} s", seconds.get<double>())});
   }
-  if (const auto foretold = report.find("foretold"); foretold != report.end()) {
-    table.rows.push_back({"foretold of all of them", fmt::format("{:.2f} s", number(*foretold, "seconds"))});
-    table.rows.push_back(
-        {"and for it", error_in_words(number(*foretold, "mean_deg"), number(*foretold, "solved"))});
+  if (const auto& foretold = report.foretold) {
+    table.rows.push_back({"foretold of all of them", fmt::format("{:.2f} s", foretold->seconds)});
+    table.rows.push_back({"and for it", error_in_words(foretold->mean_deg, foretold->solved)});
   }
   return {.title = "Time by phase", .table = std::move(table), .is_half = true};
 }
 
 }  // namespace
 
-std::string report_page(const Json& report, const std::vector<report::Figure>& pictures) {
-  const std::string title = report.value("title", "");
-  report::Page page = {.title = title.empty() ? "Untitled cloth" : title, .meta = {meta(report)}};
-  if (Result<std::vector<Verdict>> warnings = read_list<Verdict>(report["warnings"], "report"))
-    page.verdicts = std::move(*warnings);
+std::string report_page(const SolveReportFacts& report, const std::vector<report::Figure>& pictures) {
+  report::Page page = {.title = report.title.empty() ? "Untitled cloth" : report.title,
+                       .meta = {meta(report)},
+                       .verdicts = report.warnings};
   if (page.verdicts.empty()) page.summary = all_is_well(report);
   page.sections = {{.figures = pictures}, residuals(report),
                    states(report),        budget(report),
-                   sigma_map(report),     reflectance_section(report.value("reflectance", Json())),
-                   light_table(report),   left_out_section(report, light_noun(report)),
+                   sigma_map(report),     reflectance_section(report.reflectance),
+                   light_table(report),   left_out_section(report.check, light_noun(report)),
                    gates(report),         time(report),
                    conditions(report),    registration(report)};
   return html_of(page);

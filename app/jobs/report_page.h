@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
+#include "app/jobs/report_facts.h"
 #include "report/page.h"
 
 namespace weft::app {
 
 /// The page of a report (weft.solve-report/1): one HTML file with its style, charts and pictures inside, no
 /// scripts, for a screen and for paper. What the report lacks the page leaves out. Only the section whose id
-/// is "time" depends on report["seconds"].
-std::string report_page(const Json& report, const std::vector<report::Figure>& pictures);
+/// is "time" depends on its seconds.
+std::string report_page(const SolveReportFacts& report, const std::vector<report::Figure>& pictures);
 
 }  // namespace weft::app

@@ -165,31 +165,26 @@ std::string words_of(const std::vector<UselessLight>& useless, UselessLight::Why
 
 }  // namespace
 
-Json json_of(const SessionConditions& conditions) {
-  Json json = Json::object();
-  if (conditions.replaced_photosites) json["hot_photosites"] = *conditions.replaced_photosites;
-  if (conditions.veil) json["veil"] = *conditions.veil;
-  if (conditions.brackets > 0) json["brackets"] = conditions.brackets;
+ConditionFacts facts_of(const SessionConditions& conditions) {
+  ConditionFacts facts;
+  if (conditions.replaced_photosites)
+    facts.hot_photosites = static_cast<int>(*conditions.replaced_photosites);
+  facts.veil = conditions.veil;
+  facts.brackets = static_cast<int>(conditions.brackets);
   for (const LeftOutLed& left_out : conditions.left_out) {
-    const char* why = left_out.why == UselessLight::Why::kSaturated ? "saturated" : "not lit";
-    json["left_out"].push_back({{"led", left_out.led}, {"why", why}});
+    const bool is_saturated = left_out.why == UselessLight::Why::kSaturated;
+    facts.left_out.push_back({left_out.led, is_saturated ? "saturated" : "not lit"});
   }
   for (const LedDrift& drift : conditions.drift) {
-    const char* from = conditions.drift_source == Drift::Source::kPatches ? "patches" : "repeat";
-    json["drift"].push_back({{"led", drift.led}, {"factor", drift.factor}, {"from", from}});
+    const bool by_patches = conditions.drift_source == Drift::Source::kPatches;
+    facts.drift.push_back({drift.led, drift.factor, by_patches ? "patches" : "repeat"});
   }
-  if (conditions.cloth_gains) {
-    const pipeline::LedGains& told = *conditions.cloth_gains;
-    Json leds = Json::array();
-    for (std::size_t k = 0; k < conditions.leds.size(); ++k)
-      leds.push_back({{"led", conditions.leds[k]}, {"factor", told.gain[k]}, {"sigma", told.sigma[k]}});
-    json["cloth_gains"] = {{"leds", std::move(leds)},
-                           {"misfit_before", told.misfit_before},
-                           {"misfit_after", told.misfit_after},
-                           {"left_out_gain", told.left_out->mean},
-                           {"left_out_sigma", told.left_out->sigma}};
-  }
-  return json;
+  if (!conditions.cloth_gains) return facts;
+  const pipeline::LedGains& told = *conditions.cloth_gains;
+  facts.cloth_gains = {{}, told.misfit_before, told.misfit_after, told.left_out->mean, told.left_out->sigma};
+  for (std::size_t k = 0; k < conditions.leds.size(); ++k)
+    facts.cloth_gains->leds.push_back({conditions.leds[k], told.gain[k], told.sigma[k]});
+  return facts;
 }
 
 Result<void> replace_bad_photosites(const SessionPlan& plan, const JobContext& context, LoadedSession& loaded,

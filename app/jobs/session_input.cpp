@@ -233,23 +233,14 @@ Result<void> lay_level(const Session& session, pipeline::Photographs& photograph
   return {};
 }
 
-Json description_of(const SessionPlan& plan) {
-  Json shots = Json::array();
+SolveInput input_of(const SessionPlan& plan) {
+  SolveInput input = {.session = plan.session.fabric,
+                      .calibration = plan.calibration.id,
+                      .cloth_height_mm = plan.session.cloth_height_mm};
   for (const Shot& shot : plan.frames())
-    shots.push_back({{"led", shot.led},
-                     {"file", shot.file},
-                     {"sha256", shot.sha256},
-                     {"exposure_us", shot.exposure_us},
-                     {"iso", shot.iso},
-                     {"f_number", shot.f_number}});
-  Json description = {{"session", plan.session.fabric},
-                      {"calibration", plan.calibration.id},
-                      {"cloth_height_mm", plan.session.cloth_height_mm},
-                      {"shots", std::move(shots)}};
-  const ClothPose& pose = plan.session.pose;
-  if (!pose.is_level())
-    description["pose"] = {{"tilt_deg", pose.tilt_deg}, {"downhill_deg", pose.downhill_deg}};
-  return description;
+    input.shots.push_back({shot.led, shot.file, shot.sha256, shot.exposure_us, shot.iso, shot.f_number});
+  if (!plan.session.pose.is_level()) input.pose = plan.session.pose;
+  return input;
 }
 
 // The session, as far as it says itself what is solved.
@@ -325,7 +316,7 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
   for (const Shot& shot : plan.frames()) {
     if (Result<void> ok = headers.look_at(shot); !ok) return std::move(ok).error();
   }
-  plan.description = description_of(plan);
+  plan.input = input_of(plan);
   return plan;
 }
 
@@ -340,7 +331,7 @@ Result<SessionPlan> plan_unopened(const SessionOptions& options, const Calibrati
   plan.size = calibration.camera->size;
   choose_parallel(plan);
   choose_more(plan);
-  plan.description = description_of(plan);
+  plan.input = input_of(plan);
   return plan;
 }
 

@@ -12,6 +12,7 @@
 #include "core/job.h"
 #include "core/result.h"
 #include "core/session.h"
+#include "core/solve_parts.h"
 #include "pipeline/conditions/drift.h"
 #include "pipeline/conditions/led_gains.h"
 #include "pipeline/conditions/useless_lights.h"
@@ -39,7 +40,7 @@ struct SessionPlan {
   std::vector<Shot> brackets;  ///< shots of LEDs in `lit` whose exposure ratio the calibration measured
   Size size;
   bool raw = true;                    ///< mosaics; else linear TIFF, PNG or EXR
-  Json description;                   ///< for solve.json, and what the id of the solve is made of
+  SolveInput input;                   ///< for solve.json, and what the id of the solve is made of
   std::vector<std::string> warnings;  ///< about shots that will not be used
   solver::Extent extent = solver::Extent::kTiles;  ///< of the level that will be solved by
 
@@ -76,9 +77,7 @@ struct SessionConditions {
   std::optional<pipeline::LedGains> cloth_gains;  ///< that the cloth told, where they were applied
   std::vector<int> leds;                          ///< of cloth_gains
 };
-/// {"hot_photosites", "veil", "brackets", "left_out", "drift", "cloth_gains"}, those that there are, for
-/// solve.json.
-Json json_of(const SessionConditions& conditions);
+ConditionFacts facts_of(const SessionConditions& conditions);
 
 /// A session in memory, corrected and ready to be solved.
 struct LoadedSession {

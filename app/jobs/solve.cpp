@@ -70,8 +70,8 @@ class StatusTally {
 };
 
 // All that the bytes of the maps depend on.
-Json inputs_of(const Json& input, const SolveOptions& options) {
-  Json read = input;
+Json inputs_of(const SolveInput& input, const SolveOptions& options) {
+  Json read = object_of(input);
   read.erase("session");  // the cloth's name is for people, who may change it
   Json inputs = {{"input", std::move(read)},
                  {"method", options.method},
@@ -95,7 +95,7 @@ Result<solver::MethodName> method_named(const std::string& name) {
 // One solve, whatever it starts from.
 struct Input {
   std::string title;
-  Json description;  // all that the id depends on besides the options
+  SolveInput input;  // all that the id depends on besides the options
   Size size;
   fs::path default_parent;  // of the output
   fs::path truth;           // normal.exr of a simulated session, or empty
@@ -180,7 +180,7 @@ class Run {
     facts_.solver_version = kSolverVersion;
     facts_.method = options.method;
     facts_.compression = options.compression;
-    facts_.input = input.description;
+    facts_.input = input.input;
     facts_.foretold = options.foretold;
   }
 
@@ -208,7 +208,7 @@ class Run {
     if (!loaded) return std::move(loaded).error();
     photographs_ = std::move(loaded->photographs);
     if (!options_.deblur) photographs_.spread.reset();
-    facts_.conditions = json_of(loaded->conditions);
+    facts_.conditions = facts_of(loaded->conditions);
     warnings_ = std::move(loaded->warnings);
     fullness_ = pipeline::fullness_of(photographs_);
     seconds_.read = watch_.lap();
@@ -297,15 +297,15 @@ class Run {
   void take_facts(const pipeline::FrameFacts& frame) {
     facts_.solved_by = facts_of(frame.tally);
     facts_.solved_by->robust_share = frame.robust_share;
-    if (frame.deblur) facts_.sharpening = json_of(*frame.deblur);
-    if (frame.lateral_corner_px) facts_.lateral_color = {{"corner_px", *frame.lateral_corner_px}};
+    if (frame.deblur) facts_.sharpening = facts_of(*frame.deblur);
+    if (frame.lateral_corner_px) facts_.lateral_color = {*frame.lateral_corner_px};
     if (frame.gloss) {
-      reflectance_ = reflectance_document(*frame.gloss, facts_.albedo_scale);
-      facts_.reflectance = reflectance_summary(reflectance_);
+      reflectance_ = reflectance_facts(*frame.gloss, facts_.albedo_scale);
+      facts_.reflectance = summary_of(*reflectance_);
     }
     if (frame.reference) {
       facts_.gates = facts_of(frame.reference->gates);
-      facts_.reference = json_of(*frame.reference);
+      facts_.reference = facts_of(*frame.reference);
       for (std::string& said : warnings_of(*frame.reference)) warnings_.push_back(std::move(said));
     }
   }
@@ -360,22 +360,21 @@ class Run {
         static_cast<double>(facts_.status.with(kSpecular)) / static_cast<double>(facts_.size.pixels());
     const ExpectedError expected = maps_->expected();
     facts_.sigma_normal_deg = maps_->sigma_facts();
-    facts_.sigma_normal_deg["solved"] = expected.solved;
     facts_.warnings = verdicts_of(summary_, tells_highlights ? specular : 0,
                                   tells_highlights ? facts_.check : std::nullopt, method_.level);
-    const Json noise_deg = maps_->sigma_noise_deg();
+    const std::optional<AngleMiddle>& noise = facts_.sigma_normal_deg->noise;
     const std::optional<Verdict> exposure =
         exposure_verdict(fullness_, static_cast<double>(lost_) / static_cast<double>(facts_.size.pixels()),
-                         noise_deg.is_null() ? 0 : noise_deg["median"].get<double>(), summary_.of_session);
+                         noise ? noise->median : 0, summary_.of_session);
     if (exposure) facts_.warnings.insert(facts_.warnings.begin(), *exposure);
-    Json page = report_document(input_.title, facts_, summary_, *maps_, seconds_json(seconds_));
-    if (!reflectance_.is_null()) {
-      if (Result<void> ok = write_json(partial_.path() / "reflectance.json", reflectance_); !ok) return ok;
-      page["reflectance"] = reflectance_;
-      page["gloss"] = reflectance_said(reflectance_);
+    SolveReportFacts report = report_facts(input_.title, facts_, summary_, *maps_, seconds_json(seconds_));
+    if (reflectance_) {
+      Result<void> ok = write_json(partial_.path() / "reflectance.json", object_of(*reflectance_));
+      if (!ok) return ok;
+      report.reflectance = reflectance_;
+      report.gloss = reflectance_said(*reflectance_);
     }
-    if (facts_.foretold) page["foretold"] = object_of(*facts_.foretold);
-    if (Result<void> ok = write_report(partial_.path(), page); !ok) return ok;
+    if (Result<void> ok = write_report(partial_.path(), report); !ok) return ok;
     seconds_.report += watch_.lap();
     facts_.taken = {seconds_until_published(seconds_), expected.total_deg, expected.solved,
                     seconds_json(seconds_)};
@@ -404,7 +403,7 @@ class Run {
   pipeline::Fullness fullness_;  // of the photographs as they were read
   std::int64_t lost_ = 0;        // pixels without a solution that have a saturated reading
   std::vector<std::string> warnings_;
-  Json reflectance_;  // reflectance.json, where a lobe was looked for
+  std::optional<ReflectanceFacts> reflectance_;  // where a lobe was looked for
   SolveFacts facts_;
   SolveSeconds seconds_;
   std::optional<Pictures> pictures_;
@@ -423,7 +422,7 @@ void end_waiting(const Product& product, Json document) {
 Result<SolveReport> solve(const solver::MethodName& method, const Input& input, const SolveOptions& options,
                           const JobContext& context) {
   const Product product =
-      product_of(kSolveProduct, inputs_of(input.description, options), input.default_parent, options.output);
+      product_of(kSolveProduct, inputs_of(input.input, options), input.default_parent, options.output);
   Result<std::optional<Json>> finished = find_finished(product);
   if (!finished) return std::move(finished).error();
   if (*finished) {
@@ -450,7 +449,7 @@ Result<std::optional<SessionPlan>> plan_second_pose(const solver::MethodName& me
   Result<SessionPlan> second =
       plan_session({.folder = options.second_pose, .calibration = input.calibration, .leds = input.leds});
   if (!second) return std::move(second).error();
-  if (second->description == first.description)
+  if (second->input == first.input)
     return unfit(ErrorKind::kUsage, "it is the session that is solved", "name the scan of the other pose");
   if (second->calibration.id != first.calibration.id)
     return unfit(ErrorKind::kBadData, "it was scanned with another calibration", "scan both poses in one go");
@@ -487,7 +486,7 @@ Result<LoadedSession> load_poses(const SessionPlan& plan, const std::optional<Se
 }  // namespace
 
 std::string id_of_solve(const SessionPlan& plan, const SolveOptions& options) {
-  return product_id(inputs_of(plan.description, options));
+  return product_id(inputs_of(plan.input, options));
 }
 
 Result<SolveReport> solve_session(const SessionOptions& input, const SolveOptions& options,
@@ -499,11 +498,11 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
   plan->extent = method->extent;
   Result<std::optional<SessionPlan>> second = plan_second_pose(*method, *plan, input, options);
   if (!second) return std::move(second).error();
-  if (*second) plan->description["second_pose"] = (*second)->description;
+  if (*second) plan->input.second_pose = object_of((*second)->input);
   const fs::path truth = plan->session.folder / "truth" / "normal.exr";
   return solve(*method,
                {.title = plan->session.fabric,
-                .description = plan->description,
+                .input = plan->input,
                 .size = plan->size,
                 .default_parent = plan->session.folder / "solve",
                 .truth = is_there(truth) ? truth : fs::path(),
@@ -526,7 +525,7 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   const fs::path name = source.has_filename() ? source.stem() : source.parent_path().filename();
   Result<SolveReport> report = solve(*method,
                                      {.title = name.string(),
-                                      .description = plan->description,
+                                      .input = plan->input,
                                       .size = plan->size,
                                       .default_parent = fs::current_path() / (name.string() + "-solve"),
                                       .truth = {},
@@ -548,7 +547,7 @@ Result<SolveReport> solve_loaded(pipeline::Photographs photographs, const SolveO
   if (!method) return method.error();
   return solve(*method,
                {.title = {},
-                .description = Json::object(),
+                .input = {},
                 .size = photographs.size,
                 .default_parent = {},
                 .truth = {},

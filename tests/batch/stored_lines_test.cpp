@@ -36,6 +36,18 @@ TEST(StoredLines, OfAPlanAreRead) {
   }
 }
 
+TEST(StoredLines, OfSessionsThatAPlanLeavesOutAreRead) {
+  const std::string text = stored("weft.batch-1.1-left-out/night.jsonl");
+  const Result<Plan> plan = plan_from_text(text, "night.jsonl");
+  ASSERT_TRUE(plan) << plan.error().message();
+  ASSERT_EQ(plan->left_out.size(), 2U);
+  EXPECT_EQ(plan->left_out[0].reason, Reason::kTurnsLittle);
+  EXPECT_EQ(plan->left_out[0].seconds, 1.5);
+  EXPECT_EQ(plan->left_out[1].kind, "bad_data");
+  Plan again = *plan;
+  EXPECT_EQ(text_of(again), text);
+}
+
 TEST(StoredLines, OfAPlanOfANewerMajorVersionAreRefused) {
   std::string text = stored("weft.batch-1/night.jsonl");
   const std::string schema = "weft.batch/1";

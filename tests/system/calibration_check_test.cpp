@@ -346,7 +346,7 @@ TEST_F(CalibrationCheck, ATableThatSankIsFoundUpdatedAndInTheHistory) {
   const auto solved =
       solve_session({root_ / "sunk.weft", second, {}}, {.method = "fast", .output = root_ / "solved"}, {});
   ASSERT_TRUE(solved) << solved.error().message();
-  EXPECT_EQ(solved->facts.input["calibration"], update->calibration.id);
+  EXPECT_EQ(solved->facts.input->calibration, update->calibration.id);
   EXPECT_NE(read_session(root_ / "sunk.weft")->calibration_id, update->calibration.id);
 
   const auto history = calibrate_history({root_ / "rig", {}, root_ / "page"}, {});

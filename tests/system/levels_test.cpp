@@ -44,7 +44,7 @@ TEST_F(Levels, ReferenceHalvesTheErrorOfADeepWeave) {
   solve("standard");
   EXPECT_LT(error_deg("reference"), 0.5 * error_deg("standard"))
       << error_deg("standard") << " degrees by standard";
-  EXPECT_EQ(report.facts.reference["stages"], Json({"shadows", "interreflection"}));
+  EXPECT_EQ(report.facts.reference->stages, (std::vector<std::string>{"shadows", "interreflection"}));
   EXPECT_EQ(report.facts.pixels, kSize.pixels());
 }
 
@@ -60,8 +60,8 @@ TEST_F(Levels, ReferenceIsTheSameForAnyThreads) {
 TEST_F(Levels, ReferenceRunsNoStageOnAFlatCardAndSaysWhy) {
   simulate(scene_named("flat", kSize), session_);
   const app::SolveReport report = solve("reference");
-  EXPECT_TRUE(report.facts.reference["stages"].empty());
-  EXPECT_TRUE(report.facts.reference["rounds"].empty());
+  EXPECT_TRUE(report.facts.reference->stages.empty());
+  EXPECT_TRUE(report.facts.reference->rounds.empty());
   ASSERT_EQ(report.facts.gates.size(), 4U);
   for (const GateFacts& gate : report.facts.gates) EXPECT_FALSE(gate.is_over) << gate.name << gate.value;
   EXPECT_EQ(report.facts.solved_by->float32, kSize.pixels());

@@ -241,19 +241,16 @@ TEST(MapSummary, FindsQuantilesOfSigmaAndOfItsPartsWhereTheNormalIsKnown) {
   band.model_normal_deg = model.plane();
   with.add(band, sum.plane(), calibration.plane());
   without.add(band, sum.plane());
-  EXPECT_NEAR(with.sigma_normal_deg()["median"], 8, 0.08);
-  EXPECT_NEAR(with.sigma_noise_deg()["median"], 0.4, 0.004);
-  EXPECT_NEAR(with.sigma_model_deg()["median"], 0.8, 0.008);
-  EXPECT_NEAR(with.sigma_calibration_deg()["median"], 4, 0.04);
-  EXPECT_NEAR(with.sigma_calibration_deg()["p95"], 7.6, 0.076);
-  EXPECT_EQ(without.sigma_normal_deg(), with.sigma_normal_deg());
-  EXPECT_TRUE(without.sigma_calibration_deg().is_null());
-  const Json facts = with.sigma_facts();
-  EXPECT_EQ(facts["median"], with.sigma_normal_deg()["median"]);
-  EXPECT_EQ(facts["noise"], with.sigma_noise_deg());
-  EXPECT_EQ(facts["model"], with.sigma_model_deg());
-  EXPECT_EQ(facts["calibration"], with.sigma_calibration_deg());
-  EXPECT_FALSE(without.sigma_facts().contains("calibration"));
+  EXPECT_NEAR(with.sigma_map().median, 8, 0.08);
+  EXPECT_NEAR(with.sigma_facts().noise->median, 0.4, 0.004);
+  const SigmaFacts facts = with.sigma_facts();
+  ASSERT_TRUE(facts.model && facts.calibration);
+  EXPECT_NEAR(facts.model->median, 0.8, 0.008);
+  EXPECT_NEAR(facts.calibration->median, 4, 0.04);
+  EXPECT_NEAR(facts.calibration->p95, 7.6, 0.076);
+  EXPECT_EQ(object_of(without.sigma_map()), object_of(with.sigma_map()));
+  EXPECT_EQ(facts.median, with.sigma_map().median);
+  EXPECT_FALSE(without.sigma_facts().calibration);
 }
 
 TEST(Budget, NamesTheModelAndTheCalibrationWhereItHasACovariance) {
@@ -446,6 +443,19 @@ TEST(Verdicts, SayThatLightsDoNotFitFromATenthAndThreeTimesTheNoise) {
   EXPECT_THAT(names(0.11, 0.04), IsEmpty()) << "a dark cloth";
 }
 
+std::string page_of(Json report, const std::vector<report::Figure>& pictures = {}) {
+  report.update({{"of", "session"},
+                 {"id", "0123456789abcdef"},
+                 {"method", "standard"},
+                 {"width", 8},
+                 {"height", 8},
+                 {"albedo_scale", "absolute"},
+                 {"pixels", 64}});
+  const Result<app::SolveReportFacts> facts = read_fields<app::SolveReportFacts>(report, "report");
+  EXPECT_TRUE(facts) << facts.error().message();
+  return facts ? app::report_page(*facts, pictures) : "";
+}
+
 TEST(ReportPage, SaysHowWellLeftOutLightsArePredictedAndWhatThatCannotSee) {
   Json report = {{"title", "twill"},         {"of", "session"},          {"warnings", Json::array()},
                  {"status", Json::object()}, {"lights", Json::array()},  {"faults", Json::array()},
@@ -453,7 +463,7 @@ TEST(ReportPage, SaysHowWellLeftOutLightsArePredictedAndWhatThatCannotSee) {
   report["sigma_normal_deg"]["median"] = nullptr;
   report["check"] =
       object_of(LeftOutFacts{{0.0123, 0.02, 0.0111, 0.015, 90}, {{4, {0.04, 0.06, {}, {}, 12}}}});
-  const std::string page = app::report_page(report, {});
+  const std::string page = page_of(report);
   EXPECT_THAT(page, HasSubstr("1.23 %"));
   EXPECT_THAT(page, HasSubstr("1.11 %"));
   EXPECT_THAT(page, HasSubstr("LED 4"));
@@ -471,8 +481,8 @@ TEST(ReportPage, SaysBelowWhichAnglesNinetyFivePercentAre) {
       {"sigma_normal_deg",
        {{"median", 0.25}, {"p95", 0.5}, {"solved", 0.11}, {"columns", 1}, {"rows", 1}, {"grid", {0.25}}}},
       {"seconds", Json::object()},
-      {"error", {{"mean_deg", 1.5}, {"p95_deg", 3.25}}}};
-  const std::string page = app::report_page(report, {});
+      {"error", {{"mean_deg", 1.5}, {"median_deg", 1}, {"p95_deg", 3.25}, {"max_deg", 9}}}};
+  const std::string page = page_of(report);
   EXPECT_THAT(page, HasSubstr("Median 0.25°, 95 percent below 0.5°. Both hold for the 11 % of the cloth"));
   EXPECT_THAT(page, HasSubstr("mean error against the truth; 95 percent below 3.25°"));
 }
@@ -483,14 +493,14 @@ TEST(ReportPage, LeavesOutWhatIsNotThereAndEscapesWhatIs) {
                        {"lights", Json::array()},         {"faults", Json::array()},
                        {"budget", Json::array()},         {"sigma_normal_deg", {{"median", nullptr}}},
                        {"seconds", {{"read", 1.5}}}};
-  const std::string page = app::report_page(report, {});
+  const std::string page = page_of(report);
   EXPECT_THAT(page, HasSubstr("wool &amp; &lt;b&gt;silk&lt;/b&gt;"));
   EXPECT_THAT(page, Not(HasSubstr("<b>")));
   EXPECT_THAT(page, HasSubstr("25.0 %"));
   EXPECT_THAT(page, HasSubstr("1.50 s"));
   EXPECT_THAT(page, Not(HasSubstr("Gates")));
   EXPECT_THAT(page, Not(HasSubstr("Conditions")));
-  EXPECT_THAT(app::report_page(report, {{"a", report::Png{"Ma"}}}), HasSubstr("TWE="));
+  EXPECT_THAT(page_of(report, {{"a", report::Png{"Ma"}}}), HasSubstr("TWE="));
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST_F(SecondPose, ShowsTheLobeThatOnePoseDoesNot) {
   EXPECT_TRUE(both["second_pose"].get<bool>());
   EXPECT_NEAR(both["clusters"][0]["alpha"].get<double>(), 0.1, 0.01);
   EXPECT_NEAR(both["clusters"][0]["f0"].get<double>(), 0.04, 0.05 * 0.04);
-  EXPECT_TRUE(report.facts.input["second_pose"]["pose"].contains("tilt_deg"));
+  EXPECT_TRUE(report.facts.input->second_pose["pose"].contains("tilt_deg"));
 }
 
 TEST_F(SecondPose, IsSolvedInTheClothsOwnPlane) {

@@ -86,6 +86,27 @@ Result<void> write_pictures(const BatchState& state, const fs::path& folder, std
 
 }  // namespace
 
+void describe(Fields& fields, ListedPicture& p) {
+  fields.value({"session", "Its folder", {}, kMustSay}, p.session);
+  fields.value({"file", "Beside the report", {}, kMustSay}, p.file);
+}
+
+void describe(Fields& fields, ListedLeftOut& l) {
+  batch::LeftOut& of = l.left_out;
+  fields.value({"session", "Its folder", {}, kMustSay}, of.session);
+  fields.choice({"left_out", "Why it is not solved", {}, kMustSay}, of.reason, batch::kReasonNames);
+  fields.value({"said", "One sentence"}, of.said);
+  fields.value({"seconds", "That are saved"}, of.seconds);
+}
+
+void describe(Fields& fields, BatchReportFacts& f) {
+  fields.value({"plan", "Its id", {}, kMustSay}, f.plan);
+  describe(fields, f.summary);
+  fields.list({"left_out", "Sessions that are not solved"}, f.left_out);
+  fields.list({"pictures", "Of those that changed most gravely, before and after"}, f.pictures);
+  fields.value({"abandoned", "Half-made folders that were removed"}, f.abandoned);
+}
+
 Result<BatchState> read_batch(const fs::path& plan_file) {
   Result<PlanFile> file = open_plan(plan_file);
   if (!file) return std::move(file).error();
@@ -113,18 +134,11 @@ Result<MergeReport> merge_batch(const fs::path& plan, const JobContext& context)
   std::vector<DrawnChange> drawn;
   if (Result<void> ok = write_pictures(*state, report.folder, drawn, context); !ok)
     return std::move(ok).error();
-  Json document = {{"schema", kReportSchema}, {"plan", state->plan.header.id}};
-  document.update(object_of(batch::SummaryDocument{state->summary, state->rows}));
-  Json left_out = Json::array(), pictures = Json::array();
-  for (const batch::LeftOut& left : state->plan.left_out)
-    left_out.push_back({{"session", left.session},
-                        {"left_out", batch::kReasonNames[static_cast<std::size_t>(left.reason)]},
-                        {"said", left.said},
-                        {"seconds", left.seconds}});
-  for (const DrawnChange& each : drawn) pictures.push_back({{"session", each.session}, {"file", each.file}});
-  document["left_out"] = std::move(left_out);
-  document["pictures"] = std::move(pictures);
-  document["abandoned"] = report.abandoned;
+  BatchReportFacts facts = {state->plan.header.id, {state->summary, state->rows}, {}, {}, report.abandoned};
+  for (const batch::LeftOut& left : state->plan.left_out) facts.left_out.push_back({left});
+  for (const DrawnChange& each : drawn) facts.pictures.push_back({each.session, each.file});
+  Json document = {{"schema", kReportSchema}};
+  write_fields(document, std::move(facts));
   if (Result<void> ok = write_json(report.folder / "report.json", document); !ok)
     return std::move(ok).error();
   const std::string page = batch_page(*state, drawn);

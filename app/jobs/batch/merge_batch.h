@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "app/jobs/batch/plan_file.h"
@@ -35,6 +36,28 @@ struct MergeReport {
   std::filesystem::path folder;  ///< RESULTS/report
   int abandoned = 0;             ///< half-made folders that were removed (abandoned.h)
 };
+
+/// Two solves that were drawn, as the report lists them.
+struct ListedPicture {
+  std::string session, file;  ///< its folder; beside the report
+};
+
+void describe(Fields& fields, ListedPicture& picture);
+
+/// A session that was not solved, as the report lists it.
+struct ListedLeftOut {
+  batch::LeftOut left_out;
+};
+
+/// What report.json says of a batch (weft.batch-report/1.1).
+struct BatchReportFacts {
+  std::string plan;  ///< id
+  batch::SummaryDocument summary;
+  std::vector<ListedLeftOut> left_out;
+  std::vector<ListedPicture> pictures;
+  int abandoned = 0;
+};
+void describe(Fields& fields, BatchReportFacts& facts);
 
 /// So many pairs of solves are drawn: those that changed most gravely.
 inline constexpr std::size_t kMostDrawn = 10;

@@ -82,11 +82,6 @@ Result<SolveReport> solve_lean(const SessionOptions& input, SolveOptions options
   return report;
 }
 
-double number_in(const Json& json, const char* key) {
-  const Json value = json.is_object() ? json.value(key, Json()) : Json();
-  return value.is_number() ? value.get<double>() : 0;
-}
-
 void add_facts_of(const SolveReport& report, batch::Outcome& outcome) {
   const SolveFacts& facts = report.facts;
   outcome.state = report.was_there ? batch::State::kThere : batch::State::kSolved;
@@ -95,8 +90,9 @@ void add_facts_of(const SolveReport& report, batch::Outcome& outcome) {
   outcome.read_s = report.seconds.read;
   outcome.solve_s = report.seconds.solve;
   outcome.expected_deg = report.expected.total_deg;
-  outcome.sigma_deg = number_in(facts.sigma_normal_deg, "median");
-  outcome.sigma_p95_deg = number_in(facts.sigma_normal_deg, "p95");
+  const SigmaFacts sigma = facts.sigma_normal_deg.value_or(SigmaFacts());
+  outcome.sigma_deg = sigma.median.value_or(0);
+  outcome.sigma_p95_deg = sigma.p95.value_or(0);
   outcome.unsolved = static_cast<double>(facts.status.with(kNoSolution)) /
                      static_cast<double>(std::max<std::int64_t>(1, facts.size.pixels()));
   outcome.solved = facts.taken ? facts.taken->solved : 1 - outcome.unsolved;

@@ -198,9 +198,7 @@ double unsolved_share(const SolveFacts& facts) {
 }
 
 std::optional<double> sigma_median(const SolveFacts& facts) {
-  if (!facts.sigma_normal_deg.is_object()) return {};
-  const Json median = facts.sigma_normal_deg.value("median", Json());
-  return median.is_number() ? std::optional(median.get<double>()) : std::nullopt;
+  return facts.sigma_normal_deg ? facts.sigma_normal_deg->median : std::nullopt;
 }
 
 Result<void> add_facts(const fs::path& before, const fs::path& after, batch::Change& change) {

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/iso_time.h"
 
@@ -26,13 +27,9 @@ Result<void> write_check_result(const fs::path& folder, const std::string& of, c
                                 const CalibrationReport& report, const std::string& checked_at) {
   if (folder.empty()) return {};
   const std::string date = checked_at.empty() ? iso_time_now() : checked_at;
-  const Json result = {{"schema", fmt::format("{}/1", kCheckResultSchema)},
-                       {"date", date},
-                       {"of", of},
-                       {"rig", calibration.subject.rig},
-                       {"calibration", calibration.id},
-                       {"passed", report.verdicts.empty()},
-                       {"numbers", report.numbers}};
+  Json result = {{"schema", fmt::format("{}/1", kCheckResultSchema)}};
+  write_fields(result, CheckResult{date, of, calibration.subject.rig, calibration.id, report.verdicts.empty(),
+                                   report.numbers});
   return write_report(report, folder, std::array{NamedFile{kCheckResultFile, text_of(result)}});
 }
 

@@ -89,23 +89,16 @@ Result<void> read_calibrations(const fs::path& root, Records& records) {
 }
 
 Result<DatedCheck> read_check(const fs::path& folder) {
-  const Result<Json> result = read_json(folder / kCheckResultFile, kCheckResultSchema, 1);
-  if (!result) return result.error();
-  JsonFields fields(*result, (folder / kCheckResultFile).string());
-  DatedCheck check;
-  check.date = fields.text("date");
-  check.of = fields.text("of");
-  check.calibration = fields.text("calibration");
-  const Json& numbers = fields.object("numbers");
-  if (!result->contains("passed") || !(*result)["passed"].is_boolean()) {
-    fields.reject("passed", "must be true or false");
-  }
-  const auto time_s = seconds_of_iso_time(check.date);
-  if (!time_s) fields.reject("date", "must be a date and time of ISO 8601");
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  check.time_s = *time_s;
-  check.passed = (*result)["passed"].get<bool>();
+  const Result<CheckResult> said = read_check_result(folder);
+  if (!said) return said.error();
+  const Json& numbers = said->numbers;
   JsonFields costs(numbers, "numbers");
+  DatedCheck check;
+  check.date = said->date;
+  check.of = said->of;
+  check.calibration = said->calibration;
+  check.time_s = seconds_of_iso_time(said->date).value_or(0);
+  check.passed = said->passed;
   check.mean_deg = costs.optional_number("cost_mean_deg");
   check.worst_deg = costs.optional_number("cost_worst_deg");
   check.read_leds = check.of == "sheets" || costs.optional_number("readings").value_or(0) > 0;

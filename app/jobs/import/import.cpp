@@ -105,14 +105,13 @@ Result<void> make_photographs(const PlannedPhotographs& planned, const ImportPla
   const PhotographTexts texts = texts_of(planned);
   const std::vector<std::string> names = stored_names(planned.photos);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto sha256 = texts.document["photographs"][i]["sha256"].get<std::string>();
+    const std::string& sha256 = texts.facts.photographs[i].sha256;
     if (Result<void> ok = bring(planned.photos.files[i], aside.path() / names[i], plan.link, sha256); !ok)
       return ok;
   }
   if (!planned.photos.mask.empty()) {
-    const auto sha256 = texts.document["mask"].get<std::string>();
-    if (Result<void> ok = bring(planned.photos.mask, aside.path() / "mask.png", plan.link, sha256); !ok)
-      return ok;
+    Result<void> ok = bring(planned.photos.mask, aside.path() / "mask.png", plan.link, texts.facts.mask);
+    if (!ok) return ok;
   }
   const std::array<std::pair<const char*, const std::string*>, 3> files = {
       {{"filenames.txt", &texts.names},
@@ -120,7 +119,7 @@ Result<void> make_photographs(const PlannedPhotographs& planned, const ImportPla
        {"light_intensities.txt", &texts.intensities}}};
   for (const auto& [name, text] : files)
     if (Result<void> ok = write_file(aside.path() / name, *text); !ok) return ok;
-  if (Result<void> ok = write_json(aside.path() / "photographs.json", texts.document); !ok) return ok;
+  if (Result<void> ok = write_json(aside.path() / "photographs.json", json_of(texts.facts)); !ok) return ok;
   return aside.publish();
 }
 

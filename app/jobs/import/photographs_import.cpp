@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/text.h"
 
@@ -34,7 +35,7 @@ PlannedPhotographs planned_by(const PhotoOptions& options, const std::string& na
 void look_for_folder(PlannedPhotographs& planned) {
   if (planned.refusal || !is_there(planned.folder)) return;
   const Result<Json> stored = read_json(planned.folder / "photographs.json", kSchema, 1);
-  if (stored && *stored == texts_of(planned).document) {
+  if (stored && *stored == json_of(texts_of(planned).facts)) {
     planned.state = ImportState::kThere;
     return;
   }
@@ -87,22 +88,35 @@ std::vector<std::string> stored_names(const PhotoPlan& photos) {
   return names;
 }
 
+void describe(Fields& fields, PhotographFacts& f) {
+  fields.value({"from", "The folder or light file that they were imported of", {}, kMustSay}, f.from);
+  fields.list({"photographs", "In the order of their lights", {}, kMustSay}, f.photographs);
+  fields.value({.name = "transfer",
+                .says = "How their values follow light; auto where they differ",
+                .need = kMustSay,
+                .words = {"auto", "linear", "srgb"}},
+               f.transfer);
+  fields.value({"mask", "SHA-256 of their mask, where there is one", {}, kUnlessEmpty}, f.mask);
+}
+
+Json json_of(const PhotographFacts& facts) {
+  Json json = {{"schema", fmt::format("{}/1", kSchema)}};
+  write_fields(json, facts);
+  return json;
+}
+
 PhotographTexts texts_of(const PlannedPhotographs& planned) {
   const PhotoPlan& photos = planned.photos;
   const std::vector<std::string> names = stored_names(photos);
   PhotographTexts texts;
-  texts.document = {{"schema", std::string(kSchema) + "/1"}, {"from", planned.source.string()}};
+  texts.facts = {planned.source.string(), photos.input.photographs, photos.input.transfer, photos.input.mask};
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto& [direction, irradiance] = photos.lights.lights[i];
     texts.names += names[i] + "\n";
     texts.directions += fmt::format("{} {} {}\n", direction.x, direction.y, direction.z);
     texts.intensities += fmt::format("{} {} {}\n", irradiance[0], irradiance[1], irradiance[2]);
-    Json photograph = photos.description["photographs"][i];
-    photograph["file"] = names[i];
-    texts.document["photographs"].push_back(std::move(photograph));
+    texts.facts.photographs[i].file = names[i];
   }
-  texts.document["transfer"] = photos.description["transfer"];
-  if (photos.description.contains("mask")) texts.document["mask"] = photos.description["mask"];
   return texts;
 }
 

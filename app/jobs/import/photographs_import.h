@@ -6,8 +6,9 @@
 
 #include "app/jobs/import/import_plan.h"
 #include "app/jobs/import/source_folders.h"
-#include "core/json_document.h"
+#include "core/fields.h"
 #include "core/result.h"
+#include "core/solve_parts.h"
 
 namespace weft::app {
 
@@ -17,11 +18,20 @@ namespace weft::app {
 std::vector<PlannedPhotographs> plan_photographs(const SourceFolders& found,
                                                  const std::filesystem::path& archive);
 
-/// The three text files of the layout, and photographs.json (weft.photographs/1), by name and text. Names of
-/// photographs are those of stored_names().
+/// What photographs.json says (weft.photographs/1).
+struct PhotographFacts {
+  std::string from;  ///< the folder or light file that they were imported of
+  std::vector<DistantPhotograph> photographs = {};
+  std::string transfer = {}, mask = {};  ///< mask: its SHA-256; empty: there is none
+};
+void describe(Fields& fields, PhotographFacts& facts);
+Json json_of(const PhotographFacts& facts);
+
+/// The three text files of the layout, and what photographs.json says. Names of photographs are those of
+/// stored_names().
 struct PhotographTexts {
   std::string names, directions, intensities;
-  Json document;
+  PhotographFacts facts;
 };
 PhotographTexts texts_of(const PlannedPhotographs& planned);
 

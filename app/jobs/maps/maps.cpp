@@ -118,10 +118,9 @@ Result<FinishingInput> known_of(const Session& session, const RectifyReport& rec
   if (!document) return document.error();
   const Result<SolveFacts> facts = solve_facts_from_json(*document);
   if (!facts) return facts.error();
-  const Json::json_pointer by_calibration("/calibration/median");
-  const Json& sigma = facts->sigma_normal_deg;
-  const bool is_told = sigma.contains(by_calibration) && sigma[by_calibration].is_number();
-  return FinishingInput{.slow_sigma_deg = is_told ? sigma[by_calibration].get<double>() : 0.0,
+  const std::optional<SigmaFacts>& sigma = facts->sigma_normal_deg;
+  const bool is_told = sigma && sigma->calibration;
+  return FinishingInput{.slow_sigma_deg = is_told ? sigma->calibration->median : 0.0,
                         .coarser = is_preview ? kPreviewFactor : 1};
 }
 

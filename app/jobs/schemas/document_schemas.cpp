@@ -3,9 +3,14 @@
 
 #include <fmt/format.h>
 
+#include "app/jobs/batch/merge_batch.h"
 #include "app/jobs/export_facts.h"
+#include "app/jobs/import/photographs_import.h"
+#include "app/jobs/last_check.h"
 #include "app/jobs/maps/map_set_facts.h"
 #include "app/jobs/rectify.h"
+#include "app/jobs/reflectance_facts.h"
+#include "app/jobs/report_facts.h"
 #include "app/jobs/sets/photograph_set.h"
 #include "batch/outcome.h"
 #include "batch/plan.h"
@@ -34,8 +39,15 @@ const std::vector<DocumentSchema>& document_schemas() {
       {"weft.response", "response.json of a calibration", fields_of<Response>},
       {"weft.color", "color.json of a calibration", fields_of<ColorTransform>},
       {"weft.lights", "lights.json of a calibration", fields_of<LightsPart>},
+      {"weft.calibration-check", "result.json: whether a rig is as it was calibrated",
+       fields_of<CheckResult>},
+      {"weft.photographs", "photographs.json: photographs under distant lights that were imported",
+       fields_of<PhotographFacts>},
       {"weft.set", "set.json: photographs for a step of a calibration", fields_of<PhotographSet>},
       {"weft.solve", "solve.json: what a solve was made of and says of itself", fields_of<SolveFacts>},
+      {"weft.reflectance", "reflectance.json: the lobes of a cloth", fields_of<ReflectanceFacts>},
+      {"weft.solve-report", "report.json of a solve: what went wrong, and where its error comes from",
+       fields_of<SolveReportFacts>},
       {"weft.rectified", "rectify.json: maps of a solve on a square grid of the table",
        fields_of<RectifyFacts>},
       {"weft.maps", "maps.json: a set of maps", fields_of<MapSetFacts>},
@@ -44,7 +56,8 @@ const std::vector<DocumentSchema>& document_schemas() {
       {"weft.batch-session", "A line of a plan: a session that is solved", fields_of<batch::Job>, false},
       {"weft.batch-left-out", "A line of a plan: a session that is not", fields_of<batch::LeftOut>, false},
       {"weft.batch-result", "A line of RESULTS/task-N.jsonl: what became of a session",
-       fields_of<batch::Outcome>}};
+       fields_of<batch::Outcome>},
+      {"weft.batch-report", "report.json of a batch", fields_of<BatchReportFacts>}};
   return all;
 }
 

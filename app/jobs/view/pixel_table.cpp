@@ -56,35 +56,33 @@ Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path
                                                      const SolveFacts& solve, const JobContext& context) {
   SessionOptions options;
   options.folder = session;
-  const Json input = solve.input.is_object() ? solve.input : Json::object();
-  const Json shots = input.value("shots", Json::array());
-  for (const Json& shot : shots) {
-    const int led = shot.value("led", 0);
-    if (led > 0 && std::ranges::find(options.leds, led) == options.leds.end()) options.leds.push_back(led);
+  const SolveInput input = solve.input.value_or(SolveInput());
+  for (const SolvedShot& shot : input.shots) {
+    if (shot.led > 0 && std::ranges::find(options.leds, shot.led) == options.leds.end())
+      options.leds.push_back(shot.led);
   }
   if (options.leds.empty())
     return Error{ErrorKind::kBadData, "the solve has no readings", session.string(),
                  "it was not made from a session", "ask a solve of a session"};
   Result<SessionPlan> plan = plan_session(options);
   if (!plan) return std::move(plan).error();
-  if (plan->description.value("calibration", "") != input.value("calibration", ""))
+  if (plan->input.calibration != input.calibration)
     return changed_since(session, "it was solved with another calibration than the session has");
-  if (plan->description.value("shots", Json()) != shots)
-    return changed_since(session, "its shots are others");
+  if (plan->input.shots != input.shots) return changed_since(session, "its shots are others");
 
   Result<LoadedSession> loaded = load_session(*plan, context);
   if (!loaded) return std::move(loaded).error();
   std::unique_ptr<PixelTable> table(new PixelTable);
   table->method_ = solve.method;
   table->photographs_ = std::move(loaded->photographs);
-  table->whole_shots_ = json_of(loaded->conditions).value("left_out", Json::array());
+  table->whole_shots_ = facts_of(loaded->conditions).left_out;
   std::vector<std::size_t> moved;
   for (const RegisteredShot& shot : solve.registration.value_or(std::vector<RegisteredShot>())) {
     const std::vector<int>& leds = table->photographs_.leds;
     const auto led = std::ranges::find(leds, shot.led);
     if (!shot.is_corrected || led == leds.end()) continue;
     moved.push_back(static_cast<std::size_t>(led - leds.begin()));
-    table->whole_shots_.push_back({{"led", *led}, {"why", "moved"}});
+    table->whole_shots_.push_back({*led, "moved"});
   }
   if (Result<void> ok = pipeline::leave_out(moved, table->photographs_); !ok) return std::move(ok).error();
   if (table->photographs_.size != solve.size) {
@@ -129,8 +127,8 @@ Json PixelTable::at(int x, int y) const {
                         {"light_dir", {l.x, l.y, l.z}},
                         {"strength", rows[k].strength[input.planes == 1 ? 0 : 1]}});
   }
-  for (const Json& shot : whole_shots_)
-    readings.push_back({{"led", shot["led"]}, {"used", false}, {"left_out", shot["why"]}});
+  for (const UnusedLed& shot : whole_shots_)
+    readings.push_back({{"led", shot.led}, {"used", false}, {"left_out", shot.why}});
   Json albedo = Json::array();
   for (int p = 0; p < input.planes; ++p)
     albedo.push_back(number(solution.albedo[static_cast<std::size_t>(p)]));

@@ -39,7 +39,7 @@ class PixelTable {
 
   pipeline::Photographs photographs_;
   std::string method_;
-  Json whole_shots_ = Json::array();  // LEDs that were not solved from
+  std::vector<UnusedLed> whole_shots_;  // LEDs that were not solved from
 };
 
 }  // namespace weft::app

@@ -197,11 +197,11 @@ Result<Reply> one_batch(const RigParts& parts, const Call& call) {
 // By session, of the report that was written last.
 std::map<std::string, std::string> pictures_of(const fs::path& report) {
   std::map<std::string, std::string> pictures;
-  const Result<std::string> text = read_text(report / kReportNumbers);
-  const Json document = text ? Json::parse(*text, nullptr, false) : Json();
-  if (!document.is_object()) return pictures;
-  for (const Json& each : document.value("pictures", Json::array()))
-    pictures[each.value("session", "")] = each.value("file", "");
+  const Result<Json> document = read_json(report / kReportNumbers, "weft.batch-report", 1);
+  if (!document || !document->contains("pictures")) return pictures;
+  const auto listed = read_list<ListedPicture>((*document)["pictures"], kReportNumbers);
+  for (const ListedPicture& each : listed ? *listed : std::vector<ListedPicture>())
+    pictures[each.session] = each.file;
   return pictures;
 }
 

@@ -24,7 +24,7 @@ Json age_of(const Calibration& calibration, const std::optional<LastCheck>& chec
   if (check) {
     age["checked"] = check->date;
     age["passed"] = check->passed;
-    if (check->mean_deg) age["mean_deg"] = *check->mean_deg;
+    if (check->cost.mean_deg) age["mean_deg"] = *check->cost.mean_deg;
   }
   return age.empty() ? Json() : age;
 }

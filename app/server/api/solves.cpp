@@ -65,7 +65,7 @@ Result<Reply> report_of_solve(const RigParts& parts, const Call& call) {
   if (!viewed->solve) return Error{ErrorKind::kNoInput, "a truth has no report", kTruth, "", "name a solve"};
   Result<Json> report = read_json(viewed->folder / "report.json", "weft.solve-report", 1);
   if (!report) return std::move(report).error();
-  (*report)["reference"] = viewed->solve->reference;
+  (*report)["reference"] = viewed->solve->reference ? object_of(*viewed->solve->reference) : Json();
   (*report)["solved_by"] = viewed->solve->solved_by ? object_of(*viewed->solve->solved_by) : Json();
   return json_reply(*report);
 }

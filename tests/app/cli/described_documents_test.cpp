@@ -9,8 +9,12 @@
 #include <vector>
 
 #include "app/jobs/export_facts.h"
+#include "app/jobs/import/photographs_import.h"
+#include "app/jobs/last_check.h"
 #include "app/jobs/maps/map_set_facts.h"
 #include "app/jobs/rectify.h"
+#include "app/jobs/reflectance_facts.h"
+#include "app/jobs/report_facts.h"
 #include "app/jobs/sets/photograph_set.h"
 #include "core/field_json.h"
 #include "core/files.h"
@@ -42,9 +46,15 @@ Described described(const char* schema) {
 }
 
 const std::vector<Described>& all_described() {
-  static const std::vector<Described> all = {
-      described<PhotographSet>("weft.set"), described<RectifyFacts>("weft.rectified"),
-      described<MapSetFacts>("weft.maps"), described<ExportFacts>("weft.export")};
+  static const std::vector<Described> all = {described<PhotographSet>("weft.set"),
+                                             described<RectifyFacts>("weft.rectified"),
+                                             described<MapSetFacts>("weft.maps"),
+                                             described<ExportFacts>("weft.export"),
+                                             described<SolveFacts>("weft.solve"),
+                                             described<CheckResult>("weft.calibration-check"),
+                                             described<PhotographFacts>("weft.photographs"),
+                                             described<ReflectanceFacts>("weft.reflectance"),
+                                             described<SolveReportFacts>("weft.solve-report")};
   return all;
 }
 
@@ -64,9 +74,15 @@ std::vector<Json> stored(const std::string& schema) {
 
 // Fields that documents of early versions had not.
 Json without_what_is_new(const Json& again, const Json& document) {
+  if (again.is_array() && document.is_array() && again.size() == document.size()) {
+    Json old = Json::array();
+    for (std::size_t i = 0; i < again.size(); ++i) old.push_back(without_what_is_new(again[i], document[i]));
+    return old;
+  }
+  if (!again.is_object() || !document.is_object()) return again;
   Json old = Json::object();
   for (const auto& [name, value] : again.items()) {
-    if (document.contains(name)) old[name] = value;
+    if (document.contains(name)) old[name] = without_what_is_new(value, document[name]);
   }
   return old;
 }
@@ -79,6 +95,20 @@ TEST(DescribedDocuments, AreWrittenAsTheyWereRead) {
       const Result<Json> again = each.again(document);
       ASSERT_TRUE(again) << each.schema << ": " << again.error().message();
       EXPECT_EQ(without_what_is_new(*again, document).dump(1), document.dump(1));
+    }
+  }
+}
+
+TEST(DescribedDocuments, ThatAreWrittenAgainKeepWhatTheyDoNotKnow) {
+  for (const Described& each : all_described()) {
+    const std::string name = each.schema;
+    if (name != "weft.set" && name != "weft.maps" && name != "weft.rectified" && name != "weft.export")
+      continue;
+    for (Json document : stored(name)) {
+      document["later"] = {{"than", "this program"}};
+      const Result<Json> again = each.again(document);
+      ASSERT_TRUE(again) << name << ": " << again.error().message();
+      EXPECT_EQ(again->value("later", Json()), document["later"]) << name;
     }
   }
 }

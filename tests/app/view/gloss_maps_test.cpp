@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "app/jobs/reflectance.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/solve_record.h"
@@ -143,20 +144,21 @@ TEST_F(GlossMaps, OfATintHaveF0OfEachChannel) {
 }
 
 TEST_F(GlossMaps, OfATintAreInReflectanceJsonAndInWords) {
-  const Json document = reflectance_document(lurex(), AlbedoScale::kAbsolute);
+  const ReflectanceFacts said = reflectance_facts(lurex(), AlbedoScale::kAbsolute);
+  const Json document = object_of(said);
   EXPECT_EQ(document["schema"], "weft.reflectance/1.2");
   const Json& golden = document["clusters"][0];
   EXPECT_EQ(golden["f0_rgb"], Json({0.1, 0.08, 0.04}));
   EXPECT_EQ(golden["sigma"]["f0_rgb"], Json({0.002, 0.001, 0.001}));
   EXPECT_NEAR(golden["tint"][0].get<double>(), 2, 1e-12);
   EXPECT_FALSE(document["clusters"][1].contains("tint"));
-  EXPECT_THAT(reflectance_words(reflectance_summary(document)),
+  EXPECT_THAT(reflectance_words(summary_of(said)),
               testing::HasSubstr("f0 0.050 (0.100 red, 0.080 green, 0.040 blue); ggx"));
-  const Json relative = reflectance_document(lurex(), AlbedoScale::kRelative);
-  EXPECT_FALSE(relative["clusters"][0].contains("f0_rgb"));
-  EXPECT_THAT(reflectance_words(reflectance_summary(relative)),
+  const ReflectanceFacts relative = reflectance_facts(lurex(), AlbedoScale::kRelative);
+  EXPECT_TRUE(relative.clusters.at(0).f0_rgb.empty());
+  EXPECT_THAT(reflectance_words(summary_of(relative)),
               testing::HasSubstr("of red, green and blue 2.00, 1.60 and 0.80 times"));
-  EXPECT_FALSE(reflectance_document(satin(), AlbedoScale::kAbsolute)["clusters"][0].contains("tint"));
+  EXPECT_FALSE(object_of(reflectance_facts(satin(), AlbedoScale::kAbsolute))["clusters"][0].contains("tint"));
 }
 
 TEST_F(GlossMaps, OfARelativeAlbedoSayNothingOfF0) {
@@ -179,15 +181,18 @@ TEST_F(GlossMaps, AreNotWrittenWhereNoLobeWasMeasuredOrUsed) {
 }
 
 TEST(ReflectanceWords, AreOfBothMaterials) {
-  const Json document = reflectance_document(satin(), AlbedoScale::kAbsolute);
+  const ReflectanceFacts said = reflectance_facts(satin(), AlbedoScale::kAbsolute);
+  const Json document = object_of(said);
   ASSERT_EQ(document["clusters"].size(), 2U);
-  const Json summary = reflectance_summary(document);
-  EXPECT_EQ(summary["second"]["family"], "ggx");
+  const ReflectanceSummary summary = summary_of(said);
+  ASSERT_TRUE(summary.second);
+  EXPECT_EQ(summary.second->family, "ggx");
   EXPECT_EQ(reflectance_words(summary),
             "two materials: anisotropic-ggx, roughness 0.400 across the yarn and 0.100 along it, f0 0.050; "
             "ggx, roughness 0.160, f0 0.060; solved with it: 100 percent of the frame");
-  EXPECT_THAT(reflectance_section(document).paragraphs.at(0), testing::HasSubstr("two materials"));
-  EXPECT_EQ(reflectance_said(document), Json({{"used", true}, {"says", reflectance_words(summary)}}));
+  EXPECT_THAT(reflectance_section(said).paragraphs.at(0), testing::HasSubstr("two materials"));
+  EXPECT_TRUE(reflectance_said(said).is_used);
+  EXPECT_EQ(reflectance_said(said).says, reflectance_words(summary));
 }
 
 TEST(ReflectanceWords, AreOfTwoLobesInAPixel) {
@@ -197,21 +202,23 @@ TEST(ReflectanceWords, AreOfTwoLobesInAPixel) {
       .family = solver::LobeFamily::kTwoGgx, .alpha = 0.15, .f0 = 0.05, .broad = 0.5, .broad_share = 0.4};
   facts.lobes[0].sigma_broad = 0.02;
   facts.lobes[0].sigma_share = 0.01;
-  const Json document = reflectance_document(facts, AlbedoScale::kAbsolute);
+  const ReflectanceFacts said = reflectance_facts(facts, AlbedoScale::kAbsolute);
+  const Json document = object_of(said);
   const Json& cluster = document["clusters"][0];
   EXPECT_EQ(cluster["family"], "two-ggx");
   EXPECT_EQ(cluster["alpha_broad"], 0.5);
   EXPECT_EQ(cluster["broad_share"], 0.4);
   EXPECT_NEAR(cluster["sigma"]["alpha_broad"].get<double>(), 0.01, 1e-12);
   EXPECT_EQ(cluster["sigma"]["broad_share"], 0.01);
-  EXPECT_EQ(lobes_in_words(reflectance_summary(document)),
+  EXPECT_EQ(lobes_in_words(summary_of(said)),
             "two-ggx, roughness 0.150 and, for 40 percent of it, 0.500, f0 0.050");
 }
 
 TEST(ReflectanceWords, SayWhereRoughnessChanges) {
   pipeline::GlossFacts facts = satin();
   facts.lobes[0].parts = {{0, 0.2, 0.01, 900}, {1, 0.205, 0.01, 910}, {3, 0.26, 0.01, 890}};
-  const Json document = reflectance_document(facts, AlbedoScale::kAbsolute);
+  const ReflectanceFacts said = reflectance_facts(facts, AlbedoScale::kAbsolute);
+  const Json document = object_of(said);
   const Json& cluster = document["clusters"][0];
   ASSERT_EQ(cluster["parts"].size(), 3U);
   EXPECT_EQ(cluster["parts"][2]["part"], "lower right");
@@ -219,21 +226,22 @@ TEST(ReflectanceWords, SayWhereRoughnessChanges) {
   const std::string warning =
       "the cloth's roughness changes across the frame: 0.200 at the upper left, 0.260 at the lower right";
   EXPECT_EQ(cluster["warning"], warning);
-  EXPECT_THAT(reflectance_section(document).paragraphs.at(1), testing::HasSubstr(warning));
+  EXPECT_THAT(reflectance_section(said).paragraphs.at(1), testing::HasSubstr(warning));
   facts.lobes[0].parts.pop_back();
-  EXPECT_FALSE(reflectance_document(facts, AlbedoScale::kAbsolute)["clusters"][0].contains("warning"));
+  EXPECT_FALSE(
+      object_of(reflectance_facts(facts, AlbedoScale::kAbsolute))["clusters"][0].contains("warning"));
 }
 
 TEST(ReflectanceWords, AreNoneWhereNoLobeWasMeasuredAndTheSectionSaysWhy) {
   pipeline::GlossFacts facts;
   facts.lobes.resize(1);
   facts.lobes[0].refusal = solver::LobeRefusal::kLambertFits;
-  const Json document = reflectance_document(facts, AlbedoScale::kRelative);
-  EXPECT_EQ(reflectance_words(reflectance_summary(document)), "");
-  EXPECT_THAT(reflectance_section(document).paragraphs.at(0), testing::HasSubstr("Not observable"));
-  const Json said = reflectance_said(document);
-  EXPECT_EQ(said["used"], false);
-  EXPECT_THAT(said["says"], testing::HasSubstr("Lambert"));
+  const ReflectanceFacts said = reflectance_facts(facts, AlbedoScale::kRelative);
+  const Json document = object_of(said);
+  EXPECT_EQ(reflectance_words(summary_of(said)), "");
+  EXPECT_THAT(reflectance_section(said).paragraphs.at(0), testing::HasSubstr("Not observable"));
+  EXPECT_FALSE(reflectance_said(said).is_used);
+  EXPECT_THAT(reflectance_said(said).says, testing::HasSubstr("Lambert"));
 }
 
 }  // namespace
