@@ -73,7 +73,7 @@ void print_report(const ExportReport& report) {
   print(fmt::format("  {} x {} pixels, {}, normals {}, roughness as {}", facts.size.width, facts.size.height,
                     size, facts.normal, facts.roughness));
   for (const std::string& line : report.source) print("  " + line);
-  for (const ExportedFile& file : facts.files) {
+  for (const ExportedTexture& file : facts.files) {
     print(fmt::format("  {}: {}, {:.2f} MB{}", file.file, file.encoding,
                       static_cast<double>(file.bytes) * 1e-6, lost_words(file.lost)));
   }

@@ -25,7 +25,7 @@ void describe(Fields& fields, ExportedChannel& c) {
   fields.value({"cut_share", "Of the pixels whose value the file cannot hold"}, c.cut_share);
 }
 
-void describe(Fields& fields, ExportedFile& f) {
+void describe(Fields& fields, ExportedTexture& f) {
   fields.value({"file", "Relative to the folder", {}, kMustSay}, f.file);
   fields.value({"sha256", "Of its bytes", {}, kMustSay}, f.sha256);
   fields.value({"bytes", "How many", {}, kMustSay}, f.bytes);

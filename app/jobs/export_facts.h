@@ -34,7 +34,7 @@ struct ExportedChannel {
   double cut_share = 0;  ///< of the pixels that the file cannot hold
 };
 
-struct ExportedFile {
+struct ExportedTexture {
   std::string file, sha256;  ///< relative to the folder
   std::uint64_t bytes = 0;
   Size size = {};
@@ -65,7 +65,7 @@ struct ExportFacts {
   bool is_tile = false;
   std::string albedo_scale = {};
   std::vector<std::string> notes = {};
-  std::vector<ExportedFile> files = {};
+  std::vector<ExportedTexture> files = {};
   std::vector<WrittenDocument> documents = {};
   Json from = Json::object();  ///< provenance_of()
   Json document = {};          ///< as it was read, so that fields of newer versions survive

@@ -61,7 +61,7 @@ Result<ImageFileInfo> info_of_file(const fs::path& file) {
 // --- export.json
 
 // The entry of a file in the nearest export.json above it.
-std::optional<ExportedFile> listing_of(const fs::path& file) {
+std::optional<ExportedTexture> listing_of(const fs::path& file) {
   const fs::path path = fs::absolute(file).lexically_normal();
   fs::path folder = path.parent_path();
   for (int i = 0; i < kMostFolders; ++i, folder = folder.parent_path()) {
@@ -69,7 +69,7 @@ std::optional<ExportedFile> listing_of(const fs::path& file) {
     const Result<ExportFacts> facts = read_export(folder);
     if (!facts) return std::nullopt;
     const std::string name = path.lexically_relative(folder).generic_string();
-    const auto found = std::ranges::find(facts->files, name, &ExportedFile::file);
+    const auto found = std::ranges::find(facts->files, name, &ExportedTexture::file);
     return found == facts->files.end() ? std::nullopt : std::optional(*found);
   }
   return std::nullopt;
@@ -82,13 +82,13 @@ std::size_t index_among(const Names& names, const std::string& word) {
 }
 
 // Whether the file is still the one that is listed; blocks are padded from its size.
-bool is_as_listed(const ExportedFile& listed, const ImageFileInfo& info) {
+bool is_as_listed(const ExportedTexture& listed, const ImageFileInfo& info) {
   const bool is_alike =
       info.size == (info.format == kDds ? exchange::whole_blocks(listed.size) : listed.size);
   return is_alike && listed.channels.size() <= info.channels.size();
 }
 
-void take_listing(const ExportedFile& listed, FileMeaning& meaning) {
+void take_listing(const ExportedTexture& listed, FileMeaning& meaning) {
   meaning.is_listed = true;
   meaning.direction =
       static_cast<exchange::NormalDirection>(index_among(exchange::kNormalDirectionNames, listed.direction));
@@ -174,7 +174,7 @@ Result<FileMeaning> meaning_of(const fs::path& file) {
   if (!info) return std::move(info).error();
   FileMeaning meaning = {.info = std::move(*info), .channels = {}};
   meaning.channels.resize(meaning.info.channels.size());
-  if (const std::optional<ExportedFile> listed = listing_of(file);
+  if (const std::optional<ExportedTexture> listed = listing_of(file);
       listed && is_as_listed(*listed, meaning.info)) {
     meaning.info.size = listed->size;
     take_listing(*listed, meaning);

@@ -41,7 +41,7 @@ Result<std::optional<ExportFacts>> earlier_export(const fs::path& folder) {
   Result<ExportFacts> facts = read_export(folder);
   if (!facts) return std::move(facts).error();
   std::set<std::string> ours = {kExportProduct.document};
-  for (const ExportedFile& each : facts->files) ours.insert(each.file);
+  for (const ExportedTexture& each : facts->files) ours.insert(each.file);
   for (const WrittenDocument& each : facts->documents) ours.insert(each.name);
   std::error_code failed;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, failed)) {
@@ -56,7 +56,7 @@ Result<std::optional<ExportFacts>> earlier_export(const fs::path& folder) {
 // Whether every file that the document names is there.
 bool is_whole(const fs::path& folder, const ExportFacts& facts) {
   return std::ranges::all_of(facts.files,
-                             [&](const ExportedFile& each) {
+                             [&](const ExportedTexture& each) {
                                return !each.inside.empty() || is_there(folder / each.file);
                              }) &&
          std::ranges::all_of(facts.documents,

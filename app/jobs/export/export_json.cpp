@@ -48,16 +48,16 @@ ExportedChannel channel_facts(const EncodedFile& file, const ChannelLoss& loss, 
   return facts;
 }
 
-ExportedFile file_facts(const PlannedExport& plan, const EncodedFile& file, const MapFolder& folder) {
+ExportedTexture file_facts(const PlannedExport& plan, const EncodedFile& file, const MapFolder& folder) {
   const exchange::Stored& stored = file.file.stored;
-  ExportedFile facts = {.file = file.name,
-                        .sha256 = file.sha256,
-                        .bytes = file.bytes,
-                        .size = file.size,
-                        .levels = file.levels,
-                        .encoding = words_of(stored),
-                        .color = stored.color,
-                        .lost = file.loss};
+  ExportedTexture facts = {.file = file.name,
+                           .sha256 = file.sha256,
+                           .bytes = file.bytes,
+                           .size = file.size,
+                           .levels = file.levels,
+                           .encoding = words_of(stored),
+                           .color = stored.color,
+                           .lost = file.loss};
   if (has_any(file.file, {"normal.y", "detail.normal.y"}))
     facts.direction = exchange::kNormalDirectionNames[static_cast<std::size_t>(file.file.direction)];
   if (has_any(file.file, {"roughness", "roughness.least"}))

@@ -86,7 +86,7 @@ std::string name_in_header(const std::string& file) {
 
 // The digest of a file that is listed: a texture, or a document of textures.
 Result<std::string> digest_of(const ExportFacts& facts, const std::string& name) {
-  for (const ExportedFile& each : facts.files) {
+  for (const ExportedTexture& each : facts.files) {
     if (each.file == name) return each.sha256;
   }
   for (const WrittenDocument& each : facts.documents) {

@@ -73,7 +73,7 @@ TEST_F(AskedSolve, SaysWhyAReadingIsLeftOut) {
 
 TEST_F(AskedSolve, IsRefusedWhereTheSessionHasChanged) {
   SolveFacts other = solve_;
-  other.input["calibration"] = "another";
+  other.input->calibration = "another";
   const auto table = PixelTable::read(session(), other, {});
   ASSERT_FALSE(table);
   EXPECT_EQ(table.error().kind, ErrorKind::kBadData);

@@ -355,9 +355,17 @@ TEST_F(OpenApi, DescribesWhatLeaves) {
   ASSERT_TRUE(write_file(folder / "maps" / "a.png", "texels"));
   ASSERT_TRUE(write_file(folder / "secret.txt", "none of theirs"));
   const std::string digest = sha256_of("texels");
-  ExportFacts facts = {.id = "a", .preset = "glb", .name = "a", .size = {2, 2}};
-  for (const char* name : {"maps/a.png", "../../session.json"})
-    facts.files.push_back({.file = name, .sha256 = digest, .bytes = 6, .size = {2, 2}});
+  ExportFacts facts = {.id = "a",
+                       .preset = "glb",
+                       .name = "a",
+                       .title = "a",
+                       .normal = "opengl",
+                       .roughness = "root",
+                       .size = {2, 2}};
+  for (const char* name : {"maps/a.png", "../../session.json"}) {
+    facts.files.push_back(
+        {.file = name, .sha256 = digest, .bytes = 6, .size = {2, 2}, .encoding = "png, 8 bits"});
+  }
   ASSERT_TRUE(write_json(folder / "export.json", json_of(facts)));
   const Json listed = conforming("GET", of, here).json()["exports"];
   ASSERT_EQ(listed.size(), 1U);
