@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/planned_cloth.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -50,17 +52,20 @@ std::optional<LobeFamily> family_called(const std::string& name) {
 Result<Lobe> lobe_of(const LobeCluster& cluster, const std::filesystem::path& file, double albedo) {
   const FittedLobe& said = cluster.lobe;
   const std::optional<LobeFamily> family = family_called(said.family);
-  const bool has_strength = said.f0 || cluster.f0_over_albedo;
-  const bool is_whole =
-      said.alpha && has_strength && (family != LobeFamily::kTwoGgx || (said.alpha_broad && said.broad_share));
-  if (!is_whole) return not_a_lobe(file, "its roughness or f0 is missing");
+  const bool is_of_two = family == LobeFamily::kTwoGgx;
+  const char* missing = !said.alpha                           ? "alpha"
+                        : !said.f0 && !cluster.f0_over_albedo ? "f0"
+                        : is_of_two && !said.alpha_broad      ? "alpha_broad"
+                        : is_of_two && !said.broad_share      ? "broad_share"
+                                                              : nullptr;
+  if (missing != nullptr) return not_a_lobe(file, fmt::format("\"{}\" is missing", missing));
   Lobe lobe;
   lobe.alpha = *said.alpha;
   lobe.f0 = said.f0 ? *said.f0 : albedo * *cluster.f0_over_albedo;
   const double along = said.alpha_along.value_or(lobe.alpha);
   lobe.axis = radians(said.axis_deg.value_or(0));
   lobe.bend = said.bend.value_or(0);
-  if (family == LobeFamily::kTwoGgx) {
+  if (is_of_two) {
     lobe.broad = *said.alpha_broad;
     lobe.broad_share = *said.broad_share;
   }

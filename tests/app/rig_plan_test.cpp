@@ -210,7 +210,7 @@ TEST_F(RigPlan, RefusesAClothThatIsNone) {
   test::edit_json(file, [](Json& document) { document["clusters"][0]["observable"] = false; });
   refuse({"nothing observable", "--cloth"});
   test::edit_json(file, [](Json& document) { document["clusters"] = Json::array({nullptr}); });
-  refuse({"nothing observable"});
+  refuse({"cluster 0", "observable"});
   test::put_bytes(file, "{");
   refuse({"not valid JSON"});
 }

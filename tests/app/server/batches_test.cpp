@@ -139,9 +139,11 @@ TEST_F(Batches, ServeTheReportsFilesAndNoOthers) {
   fs::create_directories(report);
   ASSERT_TRUE(write_file(report / "report.html", "<h1>Batch</h1>"));
   ASSERT_TRUE(write_file(report / "worst-01.png", "\x89PNG"));
-  ASSERT_TRUE(write_file(
-      report / "report.json",
-      Json{{"pictures", Json::array({{{"session", jobs_[0].session}, {"file", "worst-01.png"}}})}}.dump()));
+  ASSERT_TRUE(
+      write_file(report / "report.json",
+                 Json{{"schema", "weft.batch-report/1.1"},
+                      {"pictures", Json::array({{{"session", jobs_[0].session}, {"file", "worst-01.png"}}})}}
+                     .dump()));
   const Answer page = get("/night/files/report.html");
   EXPECT_EQ(page.status, 200);
   EXPECT_THAT(page.head, HasSubstr("default-src 'none'"));
