@@ -62,7 +62,7 @@ bool is_needed(const Json& schema, const std::string& field) {
 void add_rows(const Json& schema, const std::string& before, std::string& page) {
   for (const auto& [name, field] : schema["properties"].items()) {
     if (before.empty() && name == "schema") continue;
-    const bool is_list = field.value("type", Json()) == "array" && field["items"].contains("properties");
+    const bool is_list = field.value("items", Json()).contains("properties");
     page += fmt::format("| `{}{}` | {} | {}{} |\n", before, name, kind_of(field),
                         is_needed(schema, name) ? "" : "*may be absent.* ", field.value("description", ""));
     const Json& inside = is_list ? field["items"] : field;
