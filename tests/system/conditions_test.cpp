@@ -16,6 +16,7 @@
 #include "app/jobs/session_input.h"
 #include "capture/raw/decode.h"
 #include "core/calibration.h"
+#include "core/field_json.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/solve_record.h"
@@ -52,7 +53,7 @@ Solved solve(const app::LoadedSession& loaded) {
   const pipeline::Mosaics* mosaics = photographs.mosaics();
   Solved out = {Image<float>(photographs.size, 3),
                 Image<std::uint16_t>(photographs.size),
-                app::json_of(loaded.conditions),
+                object_of(app::facts_of(loaded.conditions)),
                 loaded.warnings,
                 mosaics != nullptr ? mosaics->replaced : std::vector<Photosite>(),
                 photographs.noise().value_or(NoiseModel())};
