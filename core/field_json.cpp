@@ -85,8 +85,11 @@ void JsonReader::take(const Field& field, Value value) {
       [&]<typename T>(T* each) {
         using Read = typename Inner<T>::Type;
         if constexpr (std::is_same_v<T, Json>) {
-          const Json& read = each->is_array() ? fields_.list(field.name) : fields_.object(field.name);
-          if (fields_.status()) *each = read;
+          // Of the kind of its default; none has any.
+          if (each->is_array()) fields_.list(field.name);
+          if (each->is_object()) fields_.object(field.name);
+          require(fields_.has(field.name), field.name, "is missing");
+          if (fields_.status()) *each = object_.at(field.name);
         } else if constexpr (kIsList<T>) {
           const Json list = list_of(field);
           T read;
