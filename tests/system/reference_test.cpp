@@ -222,7 +222,7 @@ TEST_F(ReferenceLevel, PublishesTheSolutionOfRobustWhereThatPredictsLeftOutLight
   EXPECT_TRUE(facts.robust_is_published) << "gain over robust " << facts.over_robust.mean;
   EXPECT_FALSE(facts.stages.any());
   EXPECT_LT(mean_angle_deg(robust.normal, reference.normal), 1e-4);
-  EXPECT_EQ(app::json_of(facts)["published"], "robust");
+  EXPECT_EQ(app::facts_of(facts).published, "robust");
   EXPECT_THAT(app::warnings_of(facts), testing::Contains(testing::HasSubstr("that of robust")));
 }
 

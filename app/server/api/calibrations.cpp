@@ -31,7 +31,7 @@ Result<Reply> begin_or_go_on(const RigParts& parts, const Call& call) {
       read_body<SetWorkRequest>(*body, {kNoSet, "a set", "POST calibrations/work"});
   if (!asked) return asked.error();
   SetKeeper::Wish wish;
-  wish.part = *set_part_of(asked->part);
+  wish.part = asked->part;
   wish.name = asked->name;
   wish.description = asked->thing.empty() ? asked->description : toml_of(asked->thing);
   if (!asked->from.empty()) wish.from = parts.rig.folder() / asked->from;

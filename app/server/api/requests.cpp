@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/server/api/requests.h"
 
-#include "app/jobs/sets/photograph_set.h"
 #include "app/server/api/job_arguments.h"
 #include "app/server/api/scan_body.h"
 
@@ -73,8 +72,8 @@ void describe(Fields& fields, ControlRequest& request) {
 }
 
 void describe(Fields& fields, SetWorkRequest& request) {
-  fields.value({.name = "part", .says = "What is photographed", .need = kMustSay, .words = set_part_names()},
-               request.part);
+  fields.choice({.name = "part", .says = "What is photographed", .need = kMustSay}, request.part,
+                kSetPartNames);
   fields.value({.name = "name",
                 .says = "Of its folder in sets/ beside the rig file; default the part's",
                 .is_sentence = true},

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/jobs/sets/photograph_set.h"
 #include "app/server/api/body_fields.h"
 #include "core/fields.h"
 #include "core/json_document.h"
@@ -37,7 +38,8 @@ struct ControlRequest {
   bool take = false;
 };
 struct SetWorkRequest {
-  std::string part, name, description, from;
+  SetPart part = SetPart::kBoard;
+  std::string name, description, from;
   Json thing = Json::object();
 };
 struct LeaveOutRequest {
