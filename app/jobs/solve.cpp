@@ -78,6 +78,7 @@ Json inputs_of(const SolveInput& input, const SolveOptions& options) {
                  {"compression", name_of(options.compression)},
                  {"solver_version", kSolverVersion}};
   if (!options.deblur) inputs["deblur"] = false;
+  if (!options.registration) inputs["registration"] = false;
   if (options.condition) inputs["condition"] = true;
   return inputs;
 }
@@ -218,7 +219,7 @@ class Run {
       Result<pipeline::Photographs> half = half_size(photographs_, context_.threads);
       if (!half) return std::move(half).error();
       photographs_ = std::move(*half);
-    } else if (!input_.is_registered) {
+    } else if (!input_.is_registered && options_.registration) {
       if (Result<void> ok = register_cloth(); !ok) return ok;
     }
     facts_.size = photographs_.size;

@@ -25,7 +25,8 @@ struct SolveOptions {
   Compression compression = Compression::kNone;  ///< of EXR files
   TileOptions tile = pipeline::kSolveTile;
   bool previews = true;
-  bool deblur = true;  ///< undoes the spread of the lens where the calibration knows it
+  bool deblur = true;        ///< undoes the spread of the lens where the calibration knows it
+  bool registration = true;  ///< finds how the cloth lay in each shot
   /// A session of the same cloth as it lay otherwise (Session::pose), in which its lobe is sought too, by the
   /// levels that seek one: scanned with the same calibration, and films if there were any. Empty: none.
   std::filesystem::path second_pose = {};

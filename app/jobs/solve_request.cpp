@@ -140,6 +140,10 @@ void describe_maps(Fields& fields, SolveRequest& r) {
                r.check);
   fields.value({.name = "deblur", .says = "Leave the blur of the lens as it is", .option = "!--no-deblur"},
                r.options.deblur);
+  fields.value({.name = "registration",
+                .says = "Take the cloth to lie alike in all shots",
+                .option = "!--no-registration"},
+               r.options.registration);
   fields.value({"condition",
                 "Also write condition.exr: the logarithm of the condition number of the lights that each "
                 "pixel was solved from"},

@@ -14,6 +14,7 @@
 
 #include "app/jobs/facts_json.h"
 #include "app/jobs/session_input.h"
+#include "app/jobs/solve.h"
 #include "core/field_json.h"
 #include "core/vec.h"
 #include "pipeline/bands.h"
@@ -91,6 +92,20 @@ TEST_F(Registration, OfASessionWithoutMovementChangesNothing) {
   const pipeline::SessionShifts shifts = *pipeline::register_shots(session, {});
   EXPECT_EQ(shifts.with(pipeline::ShiftVerdict::kStill).size(), 10U)
       << list_of(app::facts_of(shifts, {})).dump(1);
+}
+
+TEST_F(Registration, IsLeftOutWhereThatIsAskedFor) {
+  simulate(still_, work_ / "still.weft");
+  const auto solved = [&](bool registration) {
+    app::SolveOptions options;
+    options.registration = registration;
+    return app::solve_session({work_ / "still.weft", {}, {}}, options, {});
+  };
+  const Result<app::SolveReport> with = solved(true), without = solved(false);
+  ASSERT_TRUE(with && without);
+  EXPECT_EQ(with->facts.registration->size(), 10U);
+  EXPECT_TRUE(without->facts.registration->empty());
+  EXPECT_NE(with->folder, without->folder) << "it is another solve";
 }
 
 TEST_F(Registration, TakesNoGlossForMovement) {

@@ -6825,6 +6825,11 @@ export interface components {
              */
             deblur?: boolean;
             /**
+             * @description Off: Take the cloth to lie alike in all shots
+             * @default true
+             */
+            registration?: boolean;
+            /**
              * @description Also write condition.exr: the logarithm of the condition number of the lights that each pixel was solved from
              * @default false
              */
