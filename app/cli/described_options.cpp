@@ -42,7 +42,7 @@ void list_as(const Field& field, bool is_of_numbers, const Option& option) {
   if (is_of_numbers || !field.is_said_again) option.by_commas();
 }
 
-// "1/60" is a share of what stands behind it.
+// "1/60" of what stands behind it.
 std::optional<double> read_share(std::string_view text) {
   const std::size_t slash = text.find('/');
   const std::optional<double> number = as_number(text.substr(0, slash));
@@ -53,12 +53,14 @@ std::optional<double> read_share(std::string_view text) {
 
 // "8h" in seconds; why it is none.
 std::string read_amount(const Field& field, const std::string& text, double& amount) {
+  const bool is_of_a_second = text.find('/') != text.npos && text.back() >= '0' && text.back() <= '9';
+  const std::string spelled = is_of_a_second ? text + "s" : text;  // "1/60", as cameras have it
   std::string names;
   for (const NumberUnit& unit : field.units) {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", *unit.name == '\0' ? "nothing" : unit.name);
-    if (!text.ends_with(unit.name)) continue;
+    if (!spelled.ends_with(unit.name)) continue;
     std::string_view said =
-        std::string_view(text).substr(0, text.size() - std::string_view(unit.name).size());
+        std::string_view(spelled).substr(0, spelled.size() - std::string_view(unit.name).size());
     said = said.substr(0, said.find_last_not_of(' ') + 1);
     const std::optional<double> number = read_share(said);
     if (!number) continue;
@@ -66,7 +68,8 @@ std::string read_amount(const Field& field, const std::string& text, double& amo
     if (field.range.holds(amount)) return "";
     return fmt::format("{} {}, and is {}", rule_of(field.range), field.units.front().name, text);
   }
-  return fmt::format("must be a number with {} behind it, and is \"{}\"", names, text);
+  return fmt::format("must be a number with {} behind it, such as 20{}, and is \"{}\"", names,
+                     field.units.front().name, text);
 }
 
 }  // namespace

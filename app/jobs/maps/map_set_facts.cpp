@@ -42,7 +42,7 @@ void describe(Fields& fields, MapSetFacts& f) {
   fields.value({"solve", "Id of the solve that they are of", {}, kMustSay}, f.source.solve);
   fields.value({"level", "Of the solve, or the method of comparison", {}, kUnlessEmpty}, f.source.level);
   fields.value({"draft", "The solve is a preview"}, f.source.is_draft);
-  fields.value({"rectified", "Id of the rectified maps that they are of", {}, kMustSay}, f.rectified);
+  fields.value({"rectified", "Id of the rectified maps that they are of"}, f.rectified);
   fields.value({"width", "Of the maps, pixels", kAboveZero, kMustSay}, f.size.width);
   fields.value({"height", "Of the maps, pixels", kAboveZero, kMustSay}, f.size.height);
   fields.value({"mm_per_pixel", "Side of a pixel, mm", kAboveZero, kMustSay}, f.mm_per_pixel);

@@ -81,8 +81,10 @@ std::string read(const Field& field, const Json& said, std::optional<T>& value) 
   return read(field, said, *value);
 }
 
+// One value stands for a list of one where a list of one will do.
 template <typename T>
 std::string read(const Field& field, const Json& said, std::vector<T>& values) {
+  if (field.fewest == 1 && !said.is_array()) return read(field, Json::array({said}), values);
   const std::size_t least = field.most > 0 ? static_cast<std::size_t>(field.fewest) : 1;
   const std::size_t most = field.most > 0 ? static_cast<std::size_t>(field.most) : kMostOfList;
   if (!said.is_array() || said.size() < least || said.size() > most)
