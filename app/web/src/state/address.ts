@@ -17,6 +17,12 @@ export function go(path: string): void {
   arrive();
 }
 
+/** The same place by its whole path. */
+export function become(path: string): void {
+  history.replaceState(null, '', path + location.search);
+  arrive();
+}
+
 /** The query of this place with some of its words changed (null: taken out). */
 export function amend(changes: Record<string, string | null>, replace = true): void {
   const address = new URL(location.href);

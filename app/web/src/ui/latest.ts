@@ -8,18 +8,13 @@ export function useLatest(begin: (latest: Latest) => void | (() => void), inputs
   useEffect(() => {
     let last: unknown;
     let isOver = false;
-    const latest: Latest = (asked) => {
-      if (!isOver) last = asked;
-      return new Promise((take, refuse) => {
-        asked.then((answer) => last === asked && take(answer), (error: unknown) => {
-          if (last === asked) refuse(error);
-        });
-      });
-    };
-    const end = begin(latest);
+    const end = begin((asked) => {
+      last = asked;
+      const isOld = () => isOver || last !== asked;
+      return new Promise((take, refuse) => asked.then((answer) => isOld() || take(answer), (error: unknown) => isOld() || refuse(error)));
+    });
     return () => {
       isOver = true;
-      last = null;
       end?.();
     };
   }, inputs);

@@ -39,13 +39,13 @@ export function ReportView({name, report, onAccepted}: ReportProps) {
       {report.barely_solved.length > 0 && (
         <>
           <p><Mark verdict="warning">Most of the cloth has no normal</Mark></p>
-          <ul>{report.barely_solved.map((session) => <li key={session}><a href={`/sessions/${session}`}><Cloth session={session} /></a></li>)}</ul>
+          <Cloths sessions={report.barely_solved} />
         </>
       )}
       {report.warned.length > 0 && (
         <details>
           <summary>{counted(report.warned.length, 'session')} solved with warnings</summary>
-          <ul>{report.warned.map((session) => <li key={session}><a href={`/sessions/${session}`}><Cloth session={session} /></a></li>)}</ul>
+          <Cloths sessions={report.warned} />
         </details>
       )}
       <p>{counted(report.changed, 'session')} compared with the solve before, {report.worse} worse in something, {report.unchanged} without a changed pixel.</p>
@@ -80,6 +80,10 @@ export function ReportView({name, report, onAccepted}: ReportProps) {
       {isAsked && <Acceptance name={name} worse={report.worse} onClose={() => ask(false)} onAccepted={onAccepted} />}
     </section>
   );
+}
+
+function Cloths({sessions}: {sessions: readonly string[]}) {
+  return <ul>{sessions.map((session) => <li key={session}><a href={`/sessions/${session}`}><Cloth session={session} /></a></li>)}</ul>;
 }
 
 interface AcceptanceProps {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What becomes different once the rig scans by another calibration, and the button that has it do so.
-import {useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import {asApiError, type ApiError} from '../../api/client';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
-import {useLatest} from '../../ui/latest';
 import {Mark} from '../../ui/mark';
 import {accept, askCalibrations, calibrations} from './state';
 
@@ -19,9 +18,9 @@ export function Acceptance({folder}: {folder: string}) {
     await accept(folder, true);
     await askCalibrations();
   });
-  useLatest((latest) => {
+  useEffect(() => {
     if (isRigs) return;
-    latest(accept(folder, false)).then(setChange, (error: unknown) => complain(asApiError(error)));
+    accept(folder, false).then(setChange, (error: unknown) => complain(asApiError(error)));
   }, [folder, isRigs]);
   if (isRigs) return <p role="status"><Mark verdict="fine">The rig scans by {folder}.</Mark></p>;
   return (

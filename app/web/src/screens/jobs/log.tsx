@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-import {useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import {asApiError, type ApiError} from '../../api/client';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import {Dialog} from '../../ui/dialog';
 import {titleOf} from '../../state/forms';
-import {useLatest} from '../../ui/latest';
 import type {Job} from './queue';
 import {logOf} from './state';
 
@@ -13,8 +12,8 @@ import {logOf} from './state';
 export function Log({job, onClose}: {job: Job; onClose: () => void}) {
   const [text, setText] = useState('');
   const [complaint, complain] = useState<ApiError | null>(null);
-  useLatest((latest) => {
-    latest(logOf(job.id)).then(setText, (error: unknown) => complain(asApiError(error)));
+  useEffect(() => {
+    logOf(job.id).then(setText, (error: unknown) => complain(asApiError(error)));
   }, [job.id]);
   return (
     <Dialog title={`${titleOf(job.kind)} ${job.of}`} onClose={onClose}>

@@ -3,9 +3,8 @@
 import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type ApiError, asApiError, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
-import {place} from '../../state/address';
+import {become} from '../../state/address';
 import {clothOf} from '../../state/cloths';
-import {placeOf} from '../../state/place';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
@@ -52,8 +51,7 @@ export function CurrentMaps({session}: {session: string}) {
     const ask = () => {
       latest(answer(api.GET('/api/v1/sessions/{name}/maps', {params: {path: {name: session}}}))).then(({current}) => {
         if (current === null) return setHasNone(true);
-        history.replaceState(null, '', placeOfMaterial({of: session, is: 'maps', id: current}) + location.search);
-        place.value = placeOf(new URL(location.href));
+        become(placeOfMaterial({of: session, is: 'maps', id: current}));
       }, (error: unknown) => setComplaint(asApiError(error)));
     };
     ask();

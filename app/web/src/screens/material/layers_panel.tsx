@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The layers of a material, and its builds.
-import {useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type ApiError, asApiError, type Schemas} from '../../api/client';
 import {go} from '../../state/address';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
-import {useLatest} from '../../ui/latest';
 import {Mark} from '../../ui/mark';
 import {Table} from '../../ui/table';
 import {percentOf} from '../../ui/words';
@@ -22,8 +21,8 @@ import {builtBy, fileName, movedBy, ownValues, requestOf, stackOf, type StackLay
 export function LayersPanel({material, built}: {material: string; built: string}) {
   const [resolved, setResolved] = useState<Schemas['ResolvedMaterial'] | null>(null);
   const [complaint, setComplaint] = useState<ApiError | null>(null);
-  useLatest((latest) => {
-    latest(answer(api.GET('/api/v1/materials/{name}', {params: {path: {name: material}}}))).then(setResolved, (error: unknown) => setComplaint(asApiError(error)));
+  useEffect(() => {
+    answer(api.GET('/api/v1/materials/{name}', {params: {path: {name: material}}})).then(setResolved, (error: unknown) => setComplaint(asApiError(error)));
   }, [material]);
   return (
     <section>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import {useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type ApiError, asApiError, type Schemas} from '../../api/client';
 import {Complaint} from '../../ui/complaint';
-import {useLatest} from '../../ui/latest';
 import {timeOf} from '../../ui/words';
 import {LayersPanel} from './layers_panel';
 import {placeOfMaterial} from './sight';
@@ -11,8 +10,8 @@ import {placeOfMaterial} from './sight';
 export function Unbuilt({material}: {material: string}) {
   const [builds, setBuilds] = useState<Schemas['Builds']['builds']>([]);
   const [complaint, setComplaint] = useState<ApiError | null>(null);
-  useLatest((latest) => {
-    latest(answer(api.GET('/api/v1/materials/{name}/builds', {params: {path: {name: material}}}))).then(
+  useEffect(() => {
+    answer(api.GET('/api/v1/materials/{name}/builds', {params: {path: {name: material}}})).then(
       (list) => setBuilds(list.builds), (error: unknown) => setComplaint(asApiError(error)),
     );
   }, [material]);

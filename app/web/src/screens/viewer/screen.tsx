@@ -3,9 +3,8 @@ import {useLatest} from '../../ui/latest';
 import './viewer.css';
 import {useEffect, useMemo, useState} from 'preact/hooks';
 import {answer, api, ApiError, asApiError} from '../../api/client';
-import {go, place} from '../../state/address';
+import {become, go, place} from '../../state/address';
 import {clothOf} from '../../state/cloths';
-import {placeOf} from '../../state/place';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Tabs} from '../../ui/tabs';
@@ -46,8 +45,7 @@ function CurrentSolve({session}: {session: string}) {
     latest(answer(api.GET('/api/v1/sessions/{name}/solves', {params: {path: {name: session}}}))).then(({solves, truth}) => {
       const solve = solves.find(({is_current}) => is_current)?.id ?? (truth ? 'truth' : null);
       if (solve === null) return setComplaint(noSolveOf(session));
-      history.replaceState(null, '', addressOfViewer({session, solve}) + location.search);
-      place.value = placeOf(new URL(location.href));
+      become(addressOfViewer({session, solve}));
     }, (error: unknown) => setComplaint(asApiError(error)));
   }, [session]);
   return <section class="page"><h1>{clothOf(session)}</h1><Complaint error={complaint} /></section>;

@@ -1,1 +1,0 @@
-import{G as e}from"./index-BauPGFrh.js";import{c as n}from"./plan-pz0x_88e.js";function r(o,s){sessionStorage.setItem(n,JSON.stringify({sessions:o,calibration:s})),e("/batches?plan=chosen")}export{r as p};
