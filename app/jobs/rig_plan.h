@@ -51,7 +51,7 @@ struct RigPlan {
 /// where the rig's lights have no places.
 Result<RigPlan> plan_rig(const RigPlanOptions& options, const JobContext& context);
 
-/// docs/rig_plan.md. What is not told is null.
+/// docs/calibration.md. What is not told is null.
 Json json_of(const RigPlan& plan);
 /// The hemisphere of places as SVG.
 std::string picture_of(const RigPlan& plan);

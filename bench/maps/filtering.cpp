@@ -126,8 +126,8 @@ Json row_of(const std::string& set, const std::string& rule, const std::vector<M
 
 /// Rules of mips against the mean of the shaded pixels beneath a texel, GGX of F0 0.04: relative rms of
 /// f (n . l) over base alphas 0.1, 0.3 and 0.5, hundred footprints a side and 128 lights. A row each rule and
-/// set of cloths: `page` has the slopes of docs/filtering.md, `other` other kinds. Columns are view and
-/// pixels a side of the footprint; then all of them, by base alpha, the satin alone, and processor time.
+/// set of cloths: `page` has the slopes of docs/measured/filtering.md, `other` other kinds. Columns are view
+/// and pixels a side of the footprint; then all of them, by base alpha, the satin alone, and processor time.
 Result<Rows> maps_mips(const StudyOptions& options) {
   const std::vector<MipContender> contenders = all_rules();
   constexpr std::size_t kSatinOfEach = 1;

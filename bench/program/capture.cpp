@@ -59,7 +59,7 @@ app::Run add_capture(app::Options& options) {
               "Rig file; default $WEFT_RIG, ./rig.toml, ~/.config/weft/rig.toml");
   options
       .add("--runs", &choice->options.runs,
-           "Commands, shots, scans or runs; 0 is as many as docs/reliability.md")
+           "Commands, shots, scans or runs; 0 is as many as docs/measured/reliability.md")
       .in_range(0, 1000000);
   options.add("--scene", &matrix->scene, "Scene of the fault matrix").shows_default();
   options.add("--megapixels", &matrix->megapixels, "Size of its frames, millions of pixels")

@@ -156,7 +156,7 @@ app::Run add_calibration(app::Options& options) {
        {"end-to-end", "what all of it together leaves of errors", calibration_end_to_end_table}});
   options
       .add("--seeds", &choice->options.runs,
-           "Rigs or noises to average over; 0 is as many as docs/calibration.md")
+           "Rigs or noises to average over; 0 is as many as docs/measured/calibration.md")
       .in_range(0, 10000)
       .shows_default();
   options.add("--docs", docs.get(), "With --part lights: folder for pictures/calibration_poses.svg");
@@ -196,7 +196,7 @@ app::Run add_server(app::Options& options) {
   options
       .add("--runs", &choice->options.runs,
            "Trials of each death, requests or tiles of each row, or pairs of scans; 0 is as many as "
-           "docs/reliability.md")
+           "docs/measured/reliability.md")
       .in_range(0, 1000000);
   options.add("--seed", &choice->options.seed, "Of the moments, or of malformed requests").shows_default();
   return run_of(choice);

@@ -14,7 +14,7 @@
 namespace weft::capture {
 namespace {
 
-// Where evidence speaks. Measured over the example scenes: docs/reliability.md.
+// Where evidence speaks. Measured over the example scenes: docs/measured/reliability.md.
 constexpr double kLitFrom = 0.005;           // of full scale: the brightest patches of a frame that is lit
 constexpr double kDarkTo = 0.02;             // of full scale: light in the dark shot that stops a scan
 constexpr double kDarkWarns = 0.004;         // that is only spoken of

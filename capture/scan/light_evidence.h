@@ -17,7 +17,7 @@ constexpr std::size_t kEnoughForPatterns = 5;
 // Is this the photograph of this LED? Patches of the frames of a session are held against the lights of its
 // calibration. The albedo of the cloth cancels between frames, its normals once there are four, and what then
 // is left of the readings tells which LEDs were lit: every likely mix-up is tried, and one that leaves far
-// less than the planned order is what happened. docs/reliability.md has how often it is wrong.
+// less than the planned order is what happened. docs/measured/reliability.md has how often it is wrong.
 
 /// What the light of a frame says of the LEDs.
 enum class Finding {

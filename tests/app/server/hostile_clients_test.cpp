@@ -63,7 +63,7 @@ TEST_F(HostileClients, SilentOnesAreNotNoticedByAGoodOneAndAreDropped) {
   fmt::print("64 silent clients: a good one is answered in {:.1f} ms (median of 50), {:.1f} ms at most\n",
              median, worst);
   RecordProperty("median_us", static_cast<int>(1000 * median));
-  // `weft bench server --part door` measures it (docs/reliability.md); this holds on a busy machine.
+  // `weft bench server --part door` measures it (docs/measured/reliability.md); this holds on a busy machine.
   EXPECT_LT(median, 1000) << "at most " << worst << " ms";
   for (std::size_t i = 0; i < silent.size(); ++i) EXPECT_TRUE(silent[i].closed_within(seconds(10))) << i;
 }

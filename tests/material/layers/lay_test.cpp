@@ -122,7 +122,7 @@ TEST(Lay, DetailAddsReliefAndPatternWithoutTheirMeans) {
 
 TEST(Lay, GlossOfADetailIsThatOfFacetsOnFacets) {
   const LayOptions detail = {.blend = LayerBlend::kDetail};
-  // Bases and details as alphas, with the single GGX nearest to them (docs/filtering.md, Gloss).
+  // Bases and details as alphas, with the single GGX nearest to them (docs/measured/filtering.md, Gloss).
   struct Joint {
     double base, detail, best;
   };

@@ -257,7 +257,7 @@ struct Observed {
   bool as_it_is, beside_the_camera, with_polarisers;
 };
 
-// As was measured with other means (docs/rig_plan.md).
+// As was measured with other means (docs/measured/calibration.md).
 TEST(LightPlan, SaysByWhichLightsALobeIsObservable) {
   const Lobe satin = {.family = LobeFamily::kAnisotropicGgx, .alpha = 0.45, .f0 = 0.05, .along = 0.35};
   const Lobe velvet = {.family = LobeFamily::kCloth, .alpha = 0.3, .f0 = 0.05};
