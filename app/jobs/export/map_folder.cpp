@@ -57,7 +57,7 @@ Result<fs::path> set_of_session(const MapFolderWish& wish) {
   const std::vector<SessionSet> sets = sets_of(solves);
   if (const SessionSet* set = set_to_use(solves, sets, wish.wanted)) return set->product.folder;
   return Error{ErrorKind::kNoInput, fmt::format("there is no complete {}", kMapsProduct.noun),
-               (wish.input / "maps").string(), "no folder there holds a maps.json",
+               (wish.input / "maps").string(), "no folder there holds a maps.json that can be read",
                fmt::format("make it first with weft maps {}", wish.input.string())};
 }
 

@@ -61,7 +61,7 @@ class BodyFields : public Fields {
   std::optional<Error> error_, missing_;
 };
 
-/// Why a value does not fit its field; else it is read, and why is empty. No path is.
+/// Why a value does not fit its field; else it is read, and why is empty. A path is read as it is said.
 std::string read_value(const Field& field, const Json& said, const Fields::Value& value);
 
 /// A body over what `described` has already. kUsage.

@@ -82,14 +82,6 @@ void take_shots(const ScanWish& wish, capture::ScanRequest& request) {
     request.polariser.states.push_back(polariser_of(state).value_or(Polariser::kNone));
 }
 
-/// The shots of a session that was begun, as its "plan" names them.
-struct BegunShots {
-  ScanWish wish;
-};
-void describe(Fields& fields, BegunShots& begun) {
-  describe_shots(fields, begun.wish);
-}
-
 }  // namespace
 
 void describe(Fields& fields, ScanWish& wish) {
@@ -184,13 +176,13 @@ capture::ScanRequest request_of_session(const Session& session, const capture::R
   request.pose = session.pose;
   if (session.document.contains("metadata")) request.metadata = session.document["metadata"];
   if (!session.document.contains("plan") || !session.document["plan"].is_object()) return request;
-  BegunShots begun = {wish_of(request, rig.leds)};
-  begun.wish.below = false;
+  ScanWish begun = wish_of(request, rig.leds);
+  begun.below = false;
   JsonReader plan(session.document["plan"], "plan");
-  describe(plan, begun);
+  describe_shots(plan, begun);
   request.polariser.states.clear();
   request.below = false;
-  if (plan.status()) take_shots(begun.wish, request);
+  if (plan.status()) take_shots(begun, request);
   return request;
 }
 
