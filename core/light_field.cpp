@@ -8,8 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/solve_record.h"
-
 namespace weft {
 namespace {
 

@@ -14,6 +14,9 @@
 
 namespace weft {
 
+/// Light matrices with this condition number or more are flagged.
+inline constexpr double kIllConditionedFrom = 1e6;
+
 /// How every light falls on the cloth seen by every pixel.
 ///
 /// A reading is  r_kc = rho_c * e_kc * max(0, n . l_k)  with, for a near light,

@@ -41,9 +41,6 @@ inline constexpr std::array<StatusName, 11> kStatusNames = {{{kSaturated, "SATUR
                                                              {kYarnAcross, "YARN_ACROSS"},
                                                              {kSecondLobe, "SECOND_LOBE"}}};
 
-/// Light matrices with this condition number or more are flagged.
-inline constexpr double kIllConditionedFrom = 1e6;
-
 /// Raised whenever the bytes of an output may change.
 inline constexpr int kSolverVersion = 13;
 

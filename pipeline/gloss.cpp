@@ -11,6 +11,7 @@
 #include "core/statistics.h"
 #include "pipeline/left_out.h"
 #include "pipeline/light_correction.h"
+#include "pipeline/sample_gloss.h"
 #include "solver/reflectance/glossy_method.h"
 #include "solver/reflectance/lobe_tint.h"
 #include "solver/uncertainty/calibration_sigma.h"

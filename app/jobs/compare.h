@@ -8,16 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "app/jobs/normal_comparison.h"
 #include "core/result.h"
 
 namespace weft::app {
-
-/// Angles between two normal maps, over the pixels that count.
-struct NormalComparison {
-  std::int64_t pixels = 0;
-  double mean_deg = 0, median_deg = 0, p95_deg = 0, max_deg = 0;
-  double flipped_mean_deg = 0;  ///< mean with the y of one map turned round, as between OpenGL and DirectX
-};
 
 /// Relative differences of two albedo maps over R, G, B of the pixels that count.
 struct AlbedoComparison {
@@ -35,9 +29,6 @@ struct NumberComparison {
 
 enum class ComparedKind { kNormal, kAlbedo, kNumber };
 using MapComparison = std::variant<NormalComparison, AlbedoComparison, std::vector<NumberComparison>>;
-
-/// Mean, median, 95th percentile and maximum of angles, which are sorted on the way.
-NormalComparison summarize(std::vector<float>& angles_deg);
 
 /// Compares `tested` with `truth`, of equal size, as what they are (app/jobs/file_meaning.h): normals by
 /// names of channels, an export.json or unit lengths, colours by those, by tags of the format or by the

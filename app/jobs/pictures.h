@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/compare.h"
+#include "app/jobs/normal_comparison.h"
 #include "core/result.h"
 #include "pipeline/bands.h"
 #include "report/downsampler.h"

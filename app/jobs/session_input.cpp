@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <functional>
 
-#include "app/jobs/foreseen.h"
 #include "app/jobs/linear_image.h"
 #include "app/jobs/session_conditions.h"
 #include "app/jobs/session_frames.h"

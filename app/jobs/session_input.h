@@ -50,6 +50,11 @@ struct SessionPlan {
 
 Result<SessionPlan> plan_session(const SessionOptions& options);
 
+/// plan_session() by a calibration that was read before, with no look at the frames: their names tell whether
+/// they are raw, and the calibration's camera how large they are. Errors as of plan_session(), but for what
+/// frames alone show.
+Result<SessionPlan> plan_unopened(const SessionOptions& options, const Calibration& calibration);
+
 /// Bytes that decoding and solving will hold at once: the frames, one more for every thread that decodes,
 /// bands, and what the level keeps of the whole frame.
 std::uint64_t memory_needed(const SessionPlan& plan, int threads);

@@ -13,7 +13,6 @@
 #include "app/jobs/condition_map.h"
 #include "app/jobs/exposure_verdict.h"
 #include "app/jobs/facts_json.h"
-#include "app/jobs/foreseen.h"
 #include "app/jobs/gloss_maps.h"
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/map_files.h"
@@ -31,6 +30,7 @@
 #include "pipeline/calibration_channels.h"
 #include "pipeline/conditions/fullness.h"
 #include "pipeline/frame.h"
+#include "pipeline/sample_gloss.h"
 #include "pipeline/shifts.h"
 #include "pipeline/sigma_channels.h"
 

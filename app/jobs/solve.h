@@ -53,6 +53,9 @@ struct SolveReport {
   SolveSeconds seconds;              ///< of this run: zero if was_there
 };
 
+/// The id that solve_session() gives the solve of this plan.
+std::string id_of_solve(const SessionPlan& plan, const SolveOptions& options);
+
 /// Solves a session into its maps (docs/formats.md): normal.exr, albedo.exr, sigma.exr, residual.exr,
 /// status.png, solve.json, previews, report.json and report.html, made aside and published whole.
 Result<SolveReport> solve_session(const SessionOptions& input, const SolveOptions& options,

@@ -15,6 +15,7 @@
 #include "bench/accuracy/score.h"
 #include "core/parallel.h"
 #include "pipeline/gloss.h"
+#include "pipeline/sample_gloss.h"
 #include "simulator/reflectance/presets.h"
 #include "simulator/sampling/random.h"
 #include "solver/reflectance/glossy_method.h"

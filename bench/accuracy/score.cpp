@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-#include "app/jobs/compare.h"
+#include "app/jobs/normal_comparison.h"
 #include "bench/base/bound.h"
 #include "core/parallel.h"
 #include "core/tiles.h"

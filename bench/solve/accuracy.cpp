@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/jobs/compare.h"
+#include "app/jobs/normal_comparison.h"
 #include "app/jobs/session_input.h"
 #include "app/jobs/solve.h"
 #include "bench/base/bound.h"

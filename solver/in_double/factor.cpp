@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/light_field.h"
+
 namespace weft::solver {
 namespace {
 

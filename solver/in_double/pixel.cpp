@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/light_field.h"
 #include "solver/in_double/factor.h"
 #include "solver/in_double/triples.h"
 #include "solver/method.h"

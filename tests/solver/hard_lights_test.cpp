@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bench/oracles/hard_lights.h"
+#include "core/light_field.h"
 #include "bench/oracles/quad_oracle.h"
 #include "bench/oracles/rig.h"
 #include "solver/in_double/pixel.h"

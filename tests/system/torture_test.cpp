@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/jobs/solve.h"
+#include "core/light_field.h"
 #include "core/image_io/image_io.h"
 #include "core/solve_record.h"
 #include "solver/method.h"

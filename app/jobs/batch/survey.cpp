@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "app/jobs/batch/lean.h"
-#include "app/jobs/foreseen.h"
+#include "app/jobs/solve.h"
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/parallel.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/gloss_samples.h"
+#include "pipeline/sample_gloss.h"
 
 #include <algorithm>
 #include <iterator>
