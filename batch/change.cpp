@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/percent.h"
+#include "core/base/percent.h"
 
 namespace weft::batch {
 namespace {

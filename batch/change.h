@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/fields.h"
+#include "core/describe/fields.h"
 
 // How a solve differs from the one before it.
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "batch/plan.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 // Which level each session is solved at.
 

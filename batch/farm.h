@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "batch/plan.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 // A batch as array jobs of Slurm (manual pages sbatch, squeue and slurm.conf of 22.05): what is asked of its
 // programs, and what is read from what they say. Nothing is run here.

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/error_json.h"
-#include "core/field_json.h"
+#include "core/describe/error_json.h"
+#include "core/describe/field_json.h"
 
 namespace weft::batch {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "batch/change.h"
-#include "core/fields.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 // What became of a session: a line of RESULTS/task-N.jsonl (weft.batch-result/1, docs/formats.md). Lines are
 // only added; of a session the last one that is a result counts.

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "core/field_json.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/describe/field_json.h"
 
 namespace weft::batch {
 namespace {

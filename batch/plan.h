@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/fields.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 // The plan of a batch as a document (weft.batch/1, docs/formats.md): JSON lines that never change once they
 // are written. The first line is the header, then comes a line a session, task by task, then a line for each

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 namespace weft::batch {
 namespace {

@@ -8,10 +8,10 @@
 #include <tuple>
 #include <utility>
 
-#include "core/error_json.h"
-#include "core/error_kind.h"
-#include "core/solve.h"
-#include "core/statistics.h"
+#include "core/base/error_kind.h"
+#include "core/base/statistics.h"
+#include "core/describe/error_json.h"
+#include "core/solve/solve.h"
 
 namespace weft::batch {
 namespace {

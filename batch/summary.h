@@ -10,7 +10,7 @@
 
 #include "batch/outcome.h"
 #include "batch/plan.h"
-#include "core/fields.h"
+#include "core/describe/fields.h"
 
 // What a batch came to.
 

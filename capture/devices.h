@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/result.h"
+#include "core/rig/session.h"
 
 namespace weft::capture {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/fields.h"
+#include "core/describe/fields.h"
+#include "core/rig/calibration.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 

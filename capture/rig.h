@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/lights.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/result.h"
+#include "core/rig/lights.h"
+#include "core/rig/session.h"
 
 namespace weft {
 class Fields;

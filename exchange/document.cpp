@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 namespace weft::exchange {
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "exchange/document.h"
 
 // What a file of texels is, by its first bytes.

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 // A material as it leaves weft: textures, and what each of them means. The writers of documents (glTF,
 // MaterialX, USD, U3M) are pure functions of it: the same material gives the same bytes.

@@ -10,11 +10,11 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/error_json.h"
-#include "core/files.h"
-#include "core/iso_time.h"
-#include "core/parallel.h"
-#include "core/solve.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
+#include "core/base/parallel.h"
+#include "core/describe/error_json.h"
+#include "core/solve/solve.h"
 #include "library/current.h"
 #include "library/session_files.h"
 

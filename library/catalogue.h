@@ -9,8 +9,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 #include "library/database.h"
 #include "library/metadata.h"
 
@@ -38,7 +38,7 @@ struct Entry {
 };
 
 /// {"key", "name", "folder", "fabric", "id", "tags", ... "bytes", "warnings", "error"}; amounts that nobody
-/// said are null, and so is `error` (core/error_json.h) where there is none.
+/// said are null, and so is `error` (core/describe/error_json.h) where there is none.
 Json json_of(const Entry& entry);
 
 /// What to look for. Empty fields ask for nothing.

@@ -8,9 +8,9 @@
 #include <tuple>
 #include <utility>
 
-#include "core/iso_time.h"
-#include "core/product.h"
-#include "core/solve.h"
+#include "core/base/iso_time.h"
+#include "core/base/product.h"
+#include "core/solve/solve.h"
 #include "library/left_out.h"
 
 namespace weft::library {

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/json_document.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/rig/session.h"
 
 // Which solve of a session others are made from, and what speaks against one.
 

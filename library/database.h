@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/result.h"
+#include "core/base/result.h"
 
 // SQLite with values and Results. What fails is a kInputOutput of the file, kTryAgain where another process
 // holds it, kBadData where it is no database.

@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "core/files.h"
-#include "core/iso_time.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
 
 namespace weft::library {
 namespace {

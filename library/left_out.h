@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/session.h"
+#include "core/rig/session.h"
 
 namespace weft::library {
 

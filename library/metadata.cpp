@@ -9,8 +9,8 @@
 #include <string_view>
 #include <utility>
 
-#include "core/solve.h"
-#include "core/text.h"
+#include "core/base/text.h"
+#include "core/solve/solve.h"
 #include "library/current.h"
 #include "library/left_out.h"
 #include "library/session_lock.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/rig/session.h"
 
 // What people say of a cloth, kept in its session.json. No solve depends on it.
 

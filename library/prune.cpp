@@ -5,9 +5,9 @@
 #include <cerrno>
 #include <utility>
 
-#include "core/files.h"
-#include "core/json_document.h"
-#include "core/solve.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
+#include "core/solve/solve.h"
 #include "library/current.h"
 #include "library/session_files.h"
 #include "library/session_lock.h"

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <utility>
 
-#include "core/exposed.h"
+#include "core/rig/exposed.h"
 
 namespace weft::library {
 namespace {

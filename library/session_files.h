@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/result.h"
+#include "core/rig/session.h"
 
 // What lies in a session's folder.
 
@@ -26,7 +26,8 @@ Result<StoredFrame> stored_frame(const Session& session, const std::string& inde
 
 /// What the scan warned of at this shot.
 std::vector<std::string> warnings_of(const Shot& shot);
-/// What its exposure is to be warned of (core/exposed.h), then what the scan warned of at shots that count.
+/// What its exposure is to be warned of (core/rig/exposed.h), then what the scan warned of at shots that
+/// count.
 std::vector<std::string> warnings_of(const Session& session);
 
 /// Whether a file is really there: a link in a session could lead out of it.

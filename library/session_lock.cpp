@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::library {
 

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "core/descriptor.h"
-#include "core/result.h"
+#include "core/base/descriptor.h"
+#include "core/base/result.h"
 
 namespace weft::library {
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <string_view>
 
-#include "core/text.h"
+#include "core/base/text.h"
 
 namespace weft::library {
 namespace {

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <string>
 
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::library {
 
 /// Whether a session may be called so: one path segment of at most 100 bytes that is plain (plain_name() of
-/// core/text.h), not beginning with a dot or a dash. Its folder is NAME.weft.
+/// core/base/text.h), not beginning with a dot or a dash. Its folder is NAME.weft.
 bool is_session_name(const std::string& name);
 
 /// The folder of the session of this name in `sessions`, there or not. kUsage if it may not be called so,

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/parallel.h"
-#include "core/solve_record.h"
+#include "core/base/parallel.h"
+#include "core/solve/solve_record.h"
 #include "material/cubic.h"
 
 namespace weft::material {

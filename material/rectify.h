@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "core/camera.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/rig/camera.h"
 
 // Maps as photographed, resampled onto a square grid of the table: lens and perspective removed.
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 namespace weft::material {
 
@@ -20,7 +20,7 @@ struct Surface {
   Image<float> slope;           ///< 2 planes, mm of height a mm of way: to the right (x), up the picture (y)
   Image<float> albedo;          ///< 3 planes, linear Rec.709, or the camera's channels
   Image<float> sigma_deg;       ///< of the normal, degrees (rms angle); 180 where there is none
-  Image<std::uint16_t> status;  ///< core/solve_record.h
+  Image<std::uint16_t> status;  ///< core/solve/solve_record.h
   Image<float> opacity;         ///< 0 hole to 1 cloth; empty: not measured
   /// 4 planes: alpha across and along, yarn azimuth in degrees, f0; 7 where highlights have colours: f0 of R,
   /// G and B after it, which is the largest of them; or empty.

@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "core/color_transform.h"
-#include "core/parallel.h"
+#include "core/base/parallel.h"
+#include "core/rig/color_transform.h"
 
 namespace weft::pipeline {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/image.h"
+#include "core/image/image.h"
+#include "core/rig/calibration.h"
 #include "pipeline/bands.h"
 
 namespace weft::pipeline {

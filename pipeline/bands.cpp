@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "pipeline/corrected_tile.h"
 #include "pipeline/light_correction.h"
 #include "pipeline/model_sigma.h"

@@ -7,10 +7,10 @@
 #include <memory>
 #include <optional>
 
-#include "core/image.h"
-#include "core/job.h"
-#include "core/result.h"
-#include "core/tiles.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/tiles.h"
 #include "pipeline/photographs.h"
 #include "solver/left_out/block_choice.h"
 #include "solver/method.h"

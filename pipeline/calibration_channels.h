@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "pipeline/bands.h"
 #include "pipeline/photographs.h"
 #include "solver/uncertainty/calibration_sigma.h"

@@ -4,9 +4,9 @@
 #include <array>
 #include <optional>
 
-#include "core/image.h"
-#include "core/point_spread.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/rig/point_spread.h"
 #include "pipeline/bands.h"
 #include "pipeline/held_rows.h"
 #include "solver/deblur/sharpen.h"

@@ -10,7 +10,7 @@
 #include <span>
 #include <utility>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "pipeline/lateral.h"
 #include "pipeline/left_out.h"
 #include "pipeline/tile_reader.h"

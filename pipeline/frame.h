@@ -4,9 +4,9 @@
 #include <array>
 #include <optional>
 
-#include "core/job.h"
-#include "core/result.h"
-#include "core/tiles.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/image/tiles.h"
 #include "pipeline/bands.h"
 #include "pipeline/deblur.h"
 #include "pipeline/gloss.h"

@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "core/color_transform.h"
-#include "core/statistics.h"
+#include "core/base/statistics.h"
+#include "core/rig/color_transform.h"
 #include "pipeline/left_out.h"
 #include "pipeline/light_correction.h"
 #include "pipeline/sample_gloss.h"

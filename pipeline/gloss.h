@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 #include "pipeline/photographs.h"
 #include "solver/left_out/block_choice.h"
 #include "solver/method.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/reflectance/pixel_fit.h"
 
 namespace weft::pipeline {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "pipeline/bands.h"
 
 namespace weft::pipeline {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "solver/kernels/demosaic.h"
 
 namespace weft::pipeline {

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
-#include "core/camera.h"
-#include "core/image.h"
-#include "core/lateral_color.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/rig/camera.h"
+#include "core/rig/lateral_color.h"
 #include "pipeline/bands.h"
 #include "pipeline/held_rows.h"
 #include "solver/lateral/align.h"

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/parallel.h"
-#include "core/statistics.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "pipeline/light_correction.h"
 #include "pipeline/tile_reader.h"
 #include "solver/in_double/pixel.h"

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/statistics.h"
-#include "core/tiles.h"
+#include "core/base/statistics.h"
+#include "core/image/tiles.h"
 #include "pipeline/left_out.h"
 
 namespace weft::pipeline {

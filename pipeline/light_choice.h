@@ -3,9 +3,9 @@
 
 #include <cstddef>
 
-#include "core/image.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "pipeline/light_correction.h"
 #include "pipeline/photographs.h"
 #include "solver/left_out/left_out.h"

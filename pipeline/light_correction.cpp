@@ -8,8 +8,8 @@
 #include <mutex>
 #include <optional>
 
-#include "core/job.h"
-#include "core/parallel.h"
+#include "core/base/job.h"
+#include "core/base/parallel.h"
 #include "pipeline/picture_axes.h"
 #include "solver/transport/marched_shadows.h"
 #include "solver/transport/slices.h"

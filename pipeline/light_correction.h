@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "pipeline/light_strengths.h"
 #include "pipeline/photographs.h"
 #include "pipeline/tile_reader.h"

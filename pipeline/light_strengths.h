@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/image.h"
-#include "core/light_field.h"
+#include "core/image/image.h"
+#include "core/rig/light_field.h"
 
 namespace weft::pipeline {
 

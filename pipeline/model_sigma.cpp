@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "solver/kernels/demosaic.h"
 
 namespace weft::pipeline {

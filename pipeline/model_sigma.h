@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "pipeline/photographs.h"
 #include "solver/kernels/model_angles.h"
 #include "solver/left_out/block_choice.h"

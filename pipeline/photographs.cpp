@@ -5,7 +5,7 @@
 #include <ranges>
 #include <utility>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::pipeline {
 

@@ -8,18 +8,18 @@
 #include <variant>
 #include <vector>
 
-#include "core/albedo_scale.h"
-#include "core/camera.h"
-#include "core/image.h"
-#include "core/lateral_color.h"
-#include "core/light_field.h"
-#include "core/lights.h"
-#include "core/photosites.h"
-#include "core/point_spread.h"
-#include "core/radiometry.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
-#include "core/veil.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/albedo_scale.h"
+#include "core/rig/camera.h"
+#include "core/rig/lateral_color.h"
+#include "core/rig/light_field.h"
+#include "core/rig/lights.h"
+#include "core/rig/photosites.h"
+#include "core/rig/point_spread.h"
+#include "core/rig/radiometry.h"
+#include "core/rig/veil.h"
 #include "pipeline/gloss_samples.h"
 #include "solver/method.h"
 
@@ -38,7 +38,7 @@ struct Planes {
 
 /// Linear RGB, developed by somebody else.
 struct Developed {
-  std::vector<Image<float>> rgb;  ///< readings, planes R, G, B (core/radiometry.h)
+  std::vector<Image<float>> rgb;  ///< readings, planes R, G, B (core/rig/radiometry.h)
 
   std::size_t count() const { return rgb.size(); }
   Planes planes() const { return {}; }

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "core/camera.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/camera.h"
 
 namespace weft::pipeline {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/solve_record.h"
-#include "core/statistics.h"
+#include "core/base/statistics.h"
+#include "core/solve/solve_record.h"
 #include "pipeline/tile_reader.h"
 #include "solver/in_double/pixel.h"
 #include "solver/in_double/pixelwise.h"

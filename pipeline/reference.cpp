@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "pipeline/left_out.h"
 #include "pipeline/picture_axes.h"
 #include "pipeline/samples.h"

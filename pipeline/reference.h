@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/job.h"
-#include "core/result.h"
-#include "core/tiles.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/image/tiles.h"
 #include "pipeline/bands.h"
 #include "pipeline/gloss.h"
 #include "pipeline/light_choice.h"

@@ -5,8 +5,8 @@
 #include <iterator>
 #include <utility>
 
-#include "core/parallel.h"
-#include "core/solve_record.h"
+#include "core/base/parallel.h"
+#include "core/solve/solve_record.h"
 #include "pipeline/corrected_tile.h"
 #include "pipeline/gloss.h"
 #include "pipeline/light_correction.h"

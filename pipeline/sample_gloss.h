@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "pipeline/gloss_samples.h"
 #include "pipeline/light_correction.h"
 #include "pipeline/photographs.h"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
-#include "core/statistics.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "pipeline/evidence.h"
 #include "pipeline/picture_axes.h"
 #include "pipeline/tile_reader.h"

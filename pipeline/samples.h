@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "pipeline/photographs.h"
 #include "solver/gates/gates.h"
 #include "solver/method.h"

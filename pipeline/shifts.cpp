@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "pipeline/cut.h"
 #include "pipeline/frame.h"
 #include "pipeline/tile_reader.h"

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 #include "pipeline/photographs.h"
 #include "solver/registration/registration.h"
 

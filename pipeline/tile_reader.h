@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
-#include "core/tiles.h"
+#include "core/image/image.h"
+#include "core/image/tiles.h"
 #include "pipeline/photographs.h"
 #include "solver/method.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::report {
 namespace {

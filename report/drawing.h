@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 namespace weft::report {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/text.h"
-#include "core/vec.h"
+#include "core/base/text.h"
+#include "core/base/vec.h"
 #include "report/preview.h"
 
 namespace weft::report {

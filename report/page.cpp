@@ -10,8 +10,8 @@
 #include <string_view>
 #include <utility>
 
-#include "core/statistics.h"
-#include "core/text.h"
+#include "core/base/statistics.h"
+#include "core/base/text.h"
 
 namespace weft::report {
 namespace {

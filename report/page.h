@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "core/image.h"
-#include "core/json_document.h"
-#include "core/verdict.h"
+#include "core/base/json_document.h"
+#include "core/image/image.h"
+#include "core/solve/verdict.h"
 
 // A report as data. The components of the page (app/web/src/report) draw it.
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/text.h"
+#include "core/base/text.h"
 #include "report/axis.h"
 
 namespace weft::report {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 // One quantity against another, for pages and for print: black and grey, series told apart by marks and
 // dashes.

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/solve_record.h"
-#include "core/statistics.h"
-#include "core/vec.h"
+#include "core/base/statistics.h"
+#include "core/base/vec.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::report {
 namespace {

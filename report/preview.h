@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "report/downsampler.h"
 #include "report/drawing.h"
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/camera.h"
+#include "core/rig/camera.h"
 #include "simulator/plan.h"
 #include "simulator/sampling/random.h"
 #include "simulator/spectra/observer.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/rig/calibration.h"
 #include "simulator/captures_layout.h"
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"

@@ -10,9 +10,9 @@
 #include <tuple>
 #include <utility>
 
-#include "core/calibration.h"
-#include "core/camera.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
+#include "core/rig/camera.h"
 #include "simulator/bare_rig.h"
 #include "simulator/captures_layout.h"
 #include "simulator/plan.h"

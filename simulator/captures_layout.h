@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/camera.h"
+#include "core/rig/camera.h"
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
 #include "simulator/targets/settings.h"

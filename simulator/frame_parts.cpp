@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::simulator {
 

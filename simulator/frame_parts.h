@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string>
 
-#include "core/image.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
 #include "simulator/camera/dng_writer.h"
 #include "simulator/effects/passes.h"
 #include "simulator/plan.h"

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/image.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "core/image_io/image_io.h"
-#include "core/result.h"
 #include "simulator/effects/passes.h"
 
 namespace weft::simulator {

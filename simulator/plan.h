@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "simulator/effects/passes.h"
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"

@@ -8,10 +8,10 @@
 #include <stop_token>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/image.h"
-#include "core/result.h"
-#include "core/tiles.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/tiles.h"
+#include "core/rig/calibration.h"
 #include "simulator/effects/passes.h"
 #include "simulator/scene/scene.h"
 

@@ -12,10 +12,10 @@
 #include <string_view>
 #include <utility>
 
-#include "core/calibration.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
-#include "core/session.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 #include "simulator/build_passes.h"
 #include "simulator/camera/dng_writer.h"
 #include "simulator/frame_parts.h"

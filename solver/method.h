@@ -9,13 +9,13 @@
 #include <string_view>
 #include <vector>
 
-#include "core/image.h"
-#include "core/light_field.h"
-#include "core/radiometry.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
-#include "core/solve_record.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/light_field.h"
+#include "core/rig/radiometry.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::solver {
 
@@ -23,8 +23,8 @@ namespace weft::solver {
 /// nothing is known of them.
 inline constexpr std::array<double, 3> kLuminance = {0.2126, 0.7152, 0.0722};
 
-/// K frames of one tile as readings (core/radiometry.h: +infinity is saturated, NaN is missing; -infinity is
-/// known to be in shadow).
+/// K frames of one tile as readings (core/rig/radiometry.h: +infinity is saturated, NaN is missing; -infinity
+/// is known to be in shadow).
 ///
 /// One plane is a mosaic: each photosite is solved alone, with its own direction and its colour's strength,
 /// so that the normal needs no demosaicing. Three planes are RGB and share one normal, solved from the sum

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/tiles.h"
+#include "core/image/tiles.h"
 
 namespace weft::solver {
 namespace {

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::virtual_rig {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::virtual_rig {
 

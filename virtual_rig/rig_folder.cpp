@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "simulator/scene/rig.h"
 
 namespace weft::virtual_rig {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "simulator/bare_rig.h"
 #include "virtual_rig/light/light_frames.h"
 

@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "virtual_rig/control_socket.h"
 
 namespace weft::virtual_rig {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/process.h"
-#include "core/result.h"
+#include "core/base/process.h"
+#include "core/base/result.h"
 
 namespace weft::virtual_rig {
 

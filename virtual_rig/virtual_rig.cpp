@@ -18,7 +18,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "virtual_rig/board/virtual_board.h"
 #include "virtual_rig/control_socket.h"
 #include "virtual_rig/light/exposure.h"

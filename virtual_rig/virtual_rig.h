@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 #include "simulator/scene/scene.h"
 #include "virtual_rig/commands/command_words.h"
 #include "virtual_rig/light/light_frames.h"

@@ -29,9 +29,9 @@
 #include "app/jobs/batch/survey.h"
 #include "app/jobs/report.h"
 #include "batch/session_list.h"
-#include "core/field_check.h"
-#include "core/files.h"
-#include "core/solve.h"
+#include "core/base/files.h"
+#include "core/describe/field_check.h"
+#include "core/solve/solve.h"
 
 namespace weft::app {
 namespace {

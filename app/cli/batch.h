@@ -7,8 +7,8 @@
 #include "app/cli/options.h"
 #include "app/cli/verb.h"
 #include "batch/farm.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -19,8 +19,8 @@
 #include "app/jobs/batch/farm.h"
 #include "app/jobs/batch/merge_batch.h"
 #include "app/jobs/report.h"
-#include "core/field_json.h"
-#include "core/process.h"
+#include "core/base/process.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

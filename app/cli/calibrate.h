@@ -7,7 +7,7 @@
 #include "app/cli/options.h"
 #include "app/cli/verb.h"
 #include "app/jobs/calibrate/outcome.h"
-#include "core/job.h"
+#include "core/base/job.h"
 
 namespace weft::app {
 

@@ -22,7 +22,7 @@
 #include "app/jobs/calibrate/update.h"
 #include "app/server/rig/rig_lock.h"
 #include "capture/rig.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

@@ -30,8 +30,8 @@
 #include "app/jobs/last_check.h"
 #include "app/jobs/sets/photograph_set.h"
 #include "capture/rig.h"
-#include "core/files.h"
-#include "core/iso_time.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
 
 namespace weft::app {
 namespace {

@@ -14,8 +14,8 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
-#include "core/fields.h"
-#include "core/process.h"
+#include "core/base/process.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 namespace {

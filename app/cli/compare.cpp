@@ -16,7 +16,7 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
 #include "app/jobs/batch/solve_change.h"
-#include "core/field_json.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "core/number.h"
+#include "core/base/number.h"
 
 namespace weft::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/cli/options.h"
-#include "core/fields.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -5,7 +5,7 @@
 
 #include "app/cli/verb.h"
 #include "app/jobs/solve_request.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

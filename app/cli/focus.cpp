@@ -15,8 +15,8 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
 #include "app/server/api/requests.h"
-#include "core/error_json.h"
-#include "core/exposure_words.h"
+#include "core/describe/error_json.h"
+#include "core/rig/exposure_words.h"
 
 namespace weft::app {
 namespace {

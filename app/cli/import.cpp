@@ -13,7 +13,7 @@
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

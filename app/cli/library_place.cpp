@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "app/cli/terminal.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 

@@ -7,7 +7,7 @@
 
 #include "app/cli/options.h"
 #include "app/cli/verb.h"
-#include "core/result.h"
+#include "core/base/result.h"
 #include "library/catalogue.h"
 
 namespace weft::app {

@@ -17,7 +17,7 @@
 #include "app/jobs/material/map_set.h"
 #include "app/jobs/material/new_material.h"
 #include "app/jobs/material/watch.h"
-#include "core/verdict.h"
+#include "core/solve/verdict.h"
 
 namespace weft::app {
 namespace {

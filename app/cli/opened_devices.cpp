@@ -11,7 +11,7 @@
 
 #include "app/cli/terminal.h"
 #include "app/server/rig/rig_lock.h"
-#include "core/error_json.h"
+#include "core/describe/error_json.h"
 
 namespace weft::app {
 

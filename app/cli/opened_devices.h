@@ -7,8 +7,8 @@
 
 #include "app/cli/rig_owner.h"
 #include "capture/rig.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

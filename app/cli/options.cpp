@@ -8,9 +8,9 @@
 #include <optional>
 #include <type_traits>
 
-#include "core/fields.h"
-#include "core/files.h"
-#include "core/number.h"
+#include "core/base/files.h"
+#include "core/base/number.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 namespace {

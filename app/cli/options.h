@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/number.h"
+#include "core/base/number.h"
 
 namespace CLI {
 class App;

@@ -25,11 +25,11 @@
 #include "app/server/rig/rig_lock.h"
 #include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/scan.h"
-#include "core/error_json.h"
-#include "core/exposure_words.h"
-#include "core/files.h"
-#include "core/percent.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/percent.h"
+#include "core/base/temporary_folder.h"
+#include "core/describe/error_json.h"
+#include "core/rig/exposure_words.h"
 
 namespace weft::app {
 namespace {

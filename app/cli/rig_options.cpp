@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "app/cli/described_options.h"
-#include "app/jobs/described_fields.h"
+#include "core/describe/described_fields.h"
 
 namespace weft::app {
 

@@ -9,7 +9,7 @@
 #include "app/server/rig_server.h"
 #include "capture/board/led_board.h"
 #include "capture/rig.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -21,11 +21,11 @@
 #include "app/server/http/error_json.h"
 #include "app/server/rig/rig_lock.h"
 #include "capture/rig.h"
-#include "core/calibration.h"
-#include "core/field_json.h"
-#include "core/files.h"
-#include "core/percent.h"
-#include "core/session.h"
+#include "core/base/files.h"
+#include "core/base/percent.h"
+#include "core/describe/field_json.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 
 namespace weft::app {
 namespace {

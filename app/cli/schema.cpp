@@ -12,8 +12,8 @@
 #include "app/cli/verb.h"
 #include "app/jobs/schemas/document_schemas.h"
 #include "app/jobs/schemas/documents_page.h"
-#include "core/fields.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/describe/fields.h"
 #include "simulator/scene/scene_page.h"
 
 namespace weft::app {

@@ -21,8 +21,8 @@
 #include "capture/rig.h"
 #include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/scan.h"
-#include "core/files.h"
-#include "core/process.h"
+#include "core/base/files.h"
+#include "core/base/process.h"
 
 namespace weft::app {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "app/cli/opened_devices.h"
 #include "app/cli/terminal.h"
-#include "core/error_json.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/describe/error_json.h"
 
 namespace weft::app {
 namespace {

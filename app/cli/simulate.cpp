@@ -10,7 +10,7 @@
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "simulator/build_passes.h"
 #include "simulator/captures.h"
 #include "simulator/effects/bounds.h"

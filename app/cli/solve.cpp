@@ -18,10 +18,10 @@
 #include "app/jobs/reflectance.h"
 #include "app/jobs/solve_request.h"
 #include "capture/rig.h"
-#include "core/field_check.h"
-#include "core/field_json.h"
-#include "core/files.h"
-#include "core/session.h"
+#include "core/base/files.h"
+#include "core/describe/field_check.h"
+#include "core/describe/field_json.h"
+#include "core/rig/session.h"
 #include "library/current.h"
 
 namespace weft::app {

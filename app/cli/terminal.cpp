@@ -12,8 +12,8 @@
 #include <optional>
 #include <thread>
 
-#include "core/error_json.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/describe/error_json.h"
 
 namespace weft::app {
 namespace {

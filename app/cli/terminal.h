@@ -9,9 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include "core/job.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

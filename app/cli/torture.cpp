@@ -11,8 +11,8 @@
 #include "app/cli/verb.h"
 #include "app/jobs/solve.h"
 #include "app/jobs/torture_request.h"
-#include "core/files.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/temporary_folder.h"
 #include "simulator/scene/scene.h"
 #include "simulator/simulate.h"
 

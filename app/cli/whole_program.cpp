@@ -10,7 +10,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/manual.h"
 #include "app/cli/terminal.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "app/jobs/compared_map.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/vec.h"
 #include "core/image_io/image_io.h"
-#include "core/solve.h"
-#include "core/vec.h"
+#include "core/solve/solve.h"
 
 namespace weft::app {
 namespace {

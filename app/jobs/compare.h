@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/jobs/normal_comparison.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

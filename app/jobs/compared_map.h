@@ -11,7 +11,7 @@
 
 #include "app/jobs/compare.h"
 #include "app/jobs/file_meaning.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 // One of two maps that are compared.
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "app/jobs/map_files.h"
+#include "core/base/parallel.h"
+#include "core/image/tiles.h"
 #include "core/image_io/image_io.h"
-#include "core/parallel.h"
-#include "core/tiles.h"
 #include "pipeline/tile_reader.h"
 #include "solver/in_double/factor.h"
 #include "solver/in_double/pixelwise.h"

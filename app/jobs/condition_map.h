@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
-#include "core/compression.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/image/compression.h"
 #include "pipeline/photographs.h"
 #include "solver/in_double/pixel.h"
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "app/jobs/described_fields.h"
+#include "core/describe/described_fields.h"
 
 namespace weft::app {
 

@@ -15,9 +15,9 @@
 #include <optional>
 
 #include "capture/scan/second_copy.h"
-#include "core/calibration.h"
-#include "core/files.h"
-#include "core/same_camera.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
+#include "core/rig/same_camera.h"
 
 namespace weft::app {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "capture/devices.h"
 #include "capture/rig.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -11,8 +11,8 @@
 
 #include "app/jobs/facts_json.h"
 #include "app/jobs/reflectance.h"
-#include "core/field_json.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/describe/field_json.h"
 #include "pipeline/cut.h"
 #include "pipeline/shifts.h"
 #include "report/downsampler.h"

@@ -11,9 +11,9 @@
 #include "app/jobs/photo_input.h"
 #include "app/jobs/session_input.h"
 #include "app/jobs/solve.h"
-#include "core/job.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 #include "solver/method.h"
 
 // What each level of the solver would give and cost, measured on this cloth and this machine before it is

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "core/field_json.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 

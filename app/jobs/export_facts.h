@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/fields.h"
-#include "core/image.h"
-#include "core/product.h"
-#include "core/result.h"
+#include "core/base/product.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
+#include "core/image/image.h"
 #include "exchange/presets/loss.h"
 #include "exchange/presets/preset.h"
 

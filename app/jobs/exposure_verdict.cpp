@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/percent.h"
+#include "core/base/percent.h"
 
 namespace weft::app {
 namespace {

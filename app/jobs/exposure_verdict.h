@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "core/result.h"
-#include "core/solve.h"
-#include "core/verdict.h"
+#include "core/base/result.h"
+#include "core/solve/solve.h"
+#include "core/solve/verdict.h"
 #include "pipeline/conditions/fullness.h"
 
 namespace weft::app {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::app {
 namespace {

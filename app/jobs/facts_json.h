@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/solve.h"
+#include "core/solve/solve.h"
 #include "pipeline/deblur.h"
 #include "pipeline/reference.h"
 #include "pipeline/shifts.h"

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "app/jobs/export_facts.h"
-#include "app/jobs/linear_image.h"
-#include "core/color_spaces.h"
-#include "core/files.h"
-#include "core/vec.h"
+#include "core/base/files.h"
+#include "core/base/vec.h"
+#include "core/image/color_spaces.h"
+#include "core/image_io/linear_image.h"
 #include "exchange/blocks/dds.h"
 #include "exchange/blocks/decode.h"
 #include "exchange/presets/pack.h"

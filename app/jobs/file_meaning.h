@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/result.h"
 #include "core/image_io/image_io.h"
-#include "core/result.h"
 #include "exchange/presets/channels.h"
 
 // What the numbers of an image file mean: by the export.json of weft that lists it, else by the names of its

@@ -15,8 +15,8 @@
 
 #include "app/jobs/pictures.h"
 #include "core/image_io/image_io.h"
-#include "core/solve_record.h"
-#include "core/status_blend.h"
+#include "core/solve/solve_record.h"
+#include "core/solve/status_blend.h"
 #include "report/downsampler.h"
 #include "report/preview.h"
 

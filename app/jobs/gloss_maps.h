@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "core/albedo_scale.h"
-#include "core/compression.h"
+#include "core/base/result.h"
+#include "core/image/compression.h"
 #include "core/image_io/image_io.h"
-#include "core/result.h"
+#include "core/rig/albedo_scale.h"
 #include "pipeline/gloss.h"
 
 namespace weft::app {

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "app/jobs/pictures.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/vec.h"
 #include "core/image_io/image_io.h"
-#include "core/vec.h"
 #include "report/preview.h"
 #include "solver/method.h"
 

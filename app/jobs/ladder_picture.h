@@ -8,8 +8,8 @@
 
 #include "app/jobs/session_input.h"
 #include "app/jobs/solve.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -7,9 +7,9 @@
 #include <system_error>
 #include <utility>
 
-#include "core/field_json.h"
-#include "core/files.h"
-#include "core/iso_time.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

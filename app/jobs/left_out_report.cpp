@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/percent.h"
+#include "core/base/percent.h"
 
 namespace weft::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/left_out_facts.h"
-#include "core/verdict.h"
+#include "core/solve/left_out_facts.h"
+#include "core/solve/verdict.h"
 #include "report/page.h"
 #include "solver/left_out/left_out.h"
 #include "solver/method.h"

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "app/jobs/photo_mask.h"
-#include "core/files.h"
-#include "core/number.h"
+#include "core/base/files.h"
+#include "core/base/number.h"
 #include "pipeline/plane_weights.h"
 
 namespace weft::app {

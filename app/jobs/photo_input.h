@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/linear_image.h"
-#include "core/job.h"
-#include "core/lights.h"
-#include "core/result.h"
-#include "core/solve_parts.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/image_io/linear_image.h"
+#include "core/rig/lights.h"
+#include "core/solve/solve_parts.h"
 #include "pipeline/photographs.h"
 
 namespace weft::app {

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/linear_image.h"
+#include "core/base/percent.h"
 #include "core/image_io/image_io.h"
-#include "core/percent.h"
+#include "core/image_io/linear_image.h"
 
 namespace weft::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/jobs/normal_comparison.h"
-#include "core/result.h"
+#include "core/base/result.h"
 #include "pipeline/bands.h"
 #include "report/downsampler.h"
 #include "report/drawing.h"

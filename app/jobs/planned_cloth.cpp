@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "app/jobs/reflectance_facts.h"
-#include "core/field_json.h"
-#include "core/json_document.h"
-#include "core/vec.h"
+#include "core/base/json_document.h"
+#include "core/base/vec.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

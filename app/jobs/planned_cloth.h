@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "solver/light_plan/light_plan.h"
 
 namespace weft::app {

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "core/radiometry.h"
-#include "core/veil.h"
+#include "core/rig/radiometry.h"
+#include "core/rig/veil.h"
 
 namespace weft::app {
 

@@ -9,16 +9,16 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/described_fields.h"
-#include "core/calibration.h"
-#include "core/field_check.h"
-#include "core/field_json.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/describe/described_fields.h"
+#include "core/describe/field_check.h"
+#include "core/describe/field_json.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/solve_maps.h"
-#include "core/session.h"
-#include "core/solve.h"
-#include "core/solve_record.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
+#include "core/solve/solve.h"
+#include "core/solve/solve_record.h"
 #include "library/current.h"
 #include "material/rectify.h"
 

@@ -7,13 +7,13 @@
 #include <optional>
 #include <string>
 
-#include "core/compression.h"
-#include "core/fields.h"
-#include "core/image.h"
-#include "core/job.h"
-#include "core/json_document.h"
-#include "core/product.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/product.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
+#include "core/image/compression.h"
+#include "core/image/image.h"
 #include "library/current.h"
 
 namespace weft::app {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "app/jobs/gloss_maps.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "report/plot_svg.h"
 
 namespace weft::app {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "app/jobs/reflectance_facts.h"
-#include "core/albedo_scale.h"
-#include "core/solve_parts.h"
+#include "core/rig/albedo_scale.h"
+#include "core/solve/solve_parts.h"
 #include "pipeline/gloss.h"
 #include "report/page.h"
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/albedo_scale.h"
-#include "core/fields.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
+#include "core/rig/albedo_scale.h"
 
 // What reflectance.json says of a cloth's lobes (weft.reflectance/1.2).
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "app/jobs/report_facts.h"
-#include "core/json_document.h"
-#include "core/result.h"
-#include "core/solve.h"
-#include "core/verdict.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/solve/solve.h"
+#include "core/solve/verdict.h"
 #include "pipeline/bands.h"
 #include "pipeline/photographs.h"
 #include "pipeline/shifts.h"

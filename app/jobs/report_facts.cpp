@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/report_facts.h"
 
-#include "core/field_json.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

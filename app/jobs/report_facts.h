@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/jobs/reflectance_facts.h"
-#include "core/solve.h"
+#include "core/solve/solve.h"
 #include "solver/diagnosis/diagnosis.h"
 
 // What report.json says of a solve (weft.solve-report/1). Numbers that are not finite are null there.

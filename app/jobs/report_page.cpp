@@ -11,7 +11,7 @@
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/reflectance.h"
 #include "app/jobs/report.h"
-#include "core/field_json.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

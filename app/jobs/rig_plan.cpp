@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "capture/rig.h"
-#include "core/calibration.h"
-#include "core/camera.h"
+#include "core/rig/calibration.h"
+#include "core/rig/camera.h"
 #include "report/hemisphere.h"
 
 namespace weft::app {

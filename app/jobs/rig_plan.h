@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "app/jobs/planned_cloth.h"
-#include "core/job.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 #include "solver/light_plan/best_place.h"
 
 namespace weft::app {

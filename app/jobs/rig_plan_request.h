@@ -6,8 +6,8 @@
 #include <string>
 
 #include "app/jobs/rig_plan.h"
-#include "core/fields.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 

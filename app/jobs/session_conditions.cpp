@@ -10,9 +10,9 @@
 #include <span>
 #include <utility>
 
+#include "core/base/iso_time.h"
+#include "core/base/percent.h"
 #include "core/image_io/image_io.h"
-#include "core/iso_time.h"
-#include "core/percent.h"
 #include "pipeline/conditions/brackets.h"
 #include "pipeline/conditions/drift.h"
 #include "pipeline/conditions/photosites.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/jobs/session_input.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/raw_frame.h"
 #include "pipeline/photographs.h"
 
 // What a session says of its own exposures, and what is made of it before it is solved (docs/conditions.md):

@@ -5,13 +5,13 @@
 
 #include <utility>
 
-#include "app/jobs/linear_image.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
-#include "core/exposure_words.h"
-#include "core/files.h"
-#include "core/same_camera.h"
-#include "core/suits.h"
+#include "core/base/files.h"
+#include "core/image_io/linear_image.h"
+#include "core/rig/exposure_words.h"
+#include "core/rig/same_camera.h"
+#include "core/rig/suits.h"
 
 namespace weft::app {
 namespace {

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <string>
 
-#include "core/calibration.h"
-#include "core/image.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 
 // The frames of a session as every job reads them, with one set of refusals.
 
@@ -25,8 +25,8 @@ class FrameHeaders {
 
   /// Looks at one frame without decoding it. kBadData, naming the file, for one that is raw where the first
   /// was developed or the other way round; of another size or layout of filters than the first; of another
-  /// exposure or ISO than session.json says; and for a calibration that does not suit it (core/suits.h) or
-  /// is of another size. Errors of reading a header.
+  /// exposure or ISO than session.json says; and for a calibration that does not suit it (core/rig/suits.h)
+  /// or is of another size. Errors of reading a header.
   Result<void> look_at(const Shot& shot);
 
   /// What the frames have in common; of no meaning before one was looked at.

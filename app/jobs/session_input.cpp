@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <functional>
 
-#include "app/jobs/linear_image.h"
 #include "app/jobs/session_conditions.h"
 #include "app/jobs/session_frames.h"
-#include "core/files.h"
-#include "core/parallel.h"
-#include "core/suits.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
+#include "core/image_io/linear_image.h"
+#include "core/rig/suits.h"
 #include "library/left_out.h"
 #include "pipeline/plane_weights.h"
 #include "pipeline/reference.h"

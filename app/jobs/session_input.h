@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/job.h"
-#include "core/result.h"
-#include "core/session.h"
-#include "core/solve_parts.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
+#include "core/solve/solve_parts.h"
 #include "pipeline/conditions/drift.h"
 #include "pipeline/conditions/led_gains.h"
 #include "pipeline/conditions/useless_lights.h"

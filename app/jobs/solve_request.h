@@ -7,7 +7,7 @@
 
 #include "app/jobs/explain.h"
 #include "app/jobs/solve.h"
-#include "core/fields.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 

@@ -14,10 +14,10 @@
 #include "app/server/rig/controls.h"
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/rig_lock.h"
-#include "core/calibration.h"
-#include "core/field_json.h"
-#include "core/files.h"
-#include "core/process.h"
+#include "core/base/files.h"
+#include "core/base/process.h"
+#include "core/describe/field_json.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 namespace {

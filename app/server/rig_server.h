@@ -9,7 +9,7 @@
 #include "app/server/rig/logbook.h"
 #include "app/server/rig/rig_keeper.h"
 #include "capture/rig.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "core/descriptor.h"
+#include "core/base/descriptor.h"
 
 namespace weft::app {
 

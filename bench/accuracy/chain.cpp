@@ -15,10 +15,10 @@
 #include "app/jobs/solve.h"
 #include "bench/accuracy/scenes.h"
 #include "bench/accuracy/score.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/statistics.h"
+#include "core/base/temporary_folder.h"
 #include "core/image_io/image_io.h"
-#include "core/statistics.h"
-#include "core/temporary_folder.h"
 #include "simulator/captures.h"
 #include "simulator/simulate.h"
 

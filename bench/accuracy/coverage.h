@@ -7,7 +7,7 @@
 #include "bench/accuracy/accuracy.h"
 #include "bench/accuracy/scenes.h"
 #include "bench/base/study.h"
-#include "core/result.h"
+#include "core/base/result.h"
 #include "solver/method.h"
 
 namespace weft::bench {

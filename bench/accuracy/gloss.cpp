@@ -13,7 +13,7 @@
 
 #include "bench/accuracy/scenes.h"
 #include "bench/accuracy/score.h"
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "pipeline/gloss.h"
 #include "pipeline/sample_gloss.h"
 #include "simulator/reflectance/presets.h"

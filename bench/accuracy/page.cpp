@@ -14,10 +14,10 @@
 
 #include "bench/accuracy/coverage.h"
 #include "bench/accuracy/score.h"
-#include "core/files.h"
-#include "core/parallel.h"
-#include "core/solve_record.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
+#include "core/base/temporary_folder.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::bench {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "bench/accuracy/accuracy.h"
 #include "bench/base/study.h"
-#include "core/result.h"
+#include "core/base/result.h"
 #include "report/plot_svg.h"
 
 namespace weft::bench {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bench/base/study.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
 
 namespace weft::bench {
 

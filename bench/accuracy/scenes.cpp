@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "pipeline/tile_reader.h"
 #include "simulator/build_passes.h"
 #include "simulator/plan.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/camera.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/rig/camera.h"
 #include "pipeline/photographs.h"
 #include "simulator/scene/scene.h"
 

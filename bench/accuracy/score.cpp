@@ -11,8 +11,8 @@
 
 #include "app/jobs/normal_comparison.h"
 #include "bench/base/bound.h"
-#include "core/parallel.h"
-#include "core/tiles.h"
+#include "core/base/parallel.h"
+#include "core/image/tiles.h"
 #include "pipeline/bands.h"
 #include "pipeline/cut.h"
 #include "pipeline/frame.h"

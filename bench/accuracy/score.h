@@ -11,7 +11,7 @@
 #include "bench/accuracy/scenes.h"
 #include "bench/base/solved_maps.h"
 #include "bench/base/study.h"
-#include "core/result.h"
+#include "core/base/result.h"
 #include "pipeline/frame.h"
 #include "pipeline/reference.h"
 #include "solver/method.h"

@@ -8,7 +8,7 @@
 #include <functional>
 #include <span>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 namespace weft::bench {
 

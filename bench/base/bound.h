@@ -3,9 +3,9 @@
 
 #include <span>
 
-#include "core/light_field.h"
-#include "core/radiometry.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/light_field.h"
+#include "core/rig/radiometry.h"
 
 namespace weft::bench {
 

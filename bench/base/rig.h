@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/camera.h"
-#include "core/image.h"
-#include "core/lights.h"
+#include "core/image/image.h"
+#include "core/rig/camera.h"
+#include "core/rig/lights.h"
 
 namespace weft::bench {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/image.h"
-#include "core/raw_frame.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
 #include "solver/method.h"
 
 namespace weft::bench {

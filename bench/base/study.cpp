@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
-#include "core/files.h"
-#include "core/parallel.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
+#include "core/base/temporary_folder.h"
 
 namespace weft::bench {
 namespace {

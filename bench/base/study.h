@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
-#include "core/process.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/process.h"
+#include "core/base/result.h"
 
 namespace weft::bench {
 

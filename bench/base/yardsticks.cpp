@@ -14,8 +14,8 @@
 
 #include "bench/base/rig.h"
 #include "bench/base/study.h"
-#include "core/parallel.h"
-#include "core/temporary_folder.h"
+#include "core/base/parallel.h"
+#include "core/base/temporary_folder.h"
 #include "simulator/camera/dng_writer.h"
 
 namespace weft::bench {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/image.h"
-#include "core/light_field.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/rig/light_field.h"
 #include "pipeline/photographs.h"
 
 // What speed is measured against, in the same run.

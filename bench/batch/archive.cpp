@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/files.h"
-#include "core/json_document.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
 #include "simulator/simulate.h"
 
 namespace weft::bench {

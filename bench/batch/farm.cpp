@@ -22,8 +22,8 @@
 #include "app/jobs/batch/plan_file.h"
 #include "bench/batch/archive.h"
 #include "bench/batch/farm_simulation.h"
-#include "core/parallel.h"
-#include "core/temporary_folder.h"
+#include "core/base/parallel.h"
+#include "core/base/temporary_folder.h"
 
 namespace weft::bench {
 namespace {

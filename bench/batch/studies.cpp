@@ -20,12 +20,12 @@
 #include "batch/outcome.h"
 #include "batch/plan.h"
 #include "bench/batch/archive.h"
-#include "core/calibration.h"
-#include "core/files.h"
-#include "core/job.h"
-#include "core/parallel.h"
-#include "core/solve.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/job.h"
+#include "core/base/parallel.h"
+#include "core/base/temporary_folder.h"
+#include "core/rig/calibration.h"
+#include "core/solve/solve.h"
 #include "simulator/scene/scene.h"
 
 namespace weft::bench {

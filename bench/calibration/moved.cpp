@@ -10,7 +10,7 @@
 
 #include "calibration/camera/markers.h"
 #include "calibration/checks/movement.h"
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "simulator/captures_layout.h"
 #include "simulator/sampling/random.h"
 #include "simulator/simulate.h"

@@ -16,10 +16,10 @@
 
 #include "bench/capture/process_size.h"
 #include "capture/raw/decode.h"
-#include "core/files.h"
-#include "core/process.h"
-#include "core/session.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/process.h"
+#include "core/base/temporary_folder.h"
+#include "core/rig/session.h"
 #include "virtual_rig/rig_process.h"
 
 namespace weft::bench {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/base/study.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::bench {
 

@@ -11,7 +11,7 @@
 
 #include "bench/base/rig.h"
 #include "bench/effects/scenes.h"
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "simulator/build_passes.h"
 #include "simulator/plan.h"
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "bench/effects/scenes.h"
+#include "core/base/parallel.h"
+#include "core/image/raw_frame.h"
 #include "core/image_io/image_io.h"
-#include "core/parallel.h"
-#include "core/raw_frame.h"
 #include "report/preview.h"
 #include "simulator/build_passes.h"
 #include "simulator/reflectance/presets.h"

@@ -12,7 +12,7 @@
 
 #include "bench/base/bare_embree.h"
 #include "bench/effects/scenes.h"
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "simulator/effects/halos.h"
 #include "simulator/geometry/surface.h"
 #include "simulator/scene/rig.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "simulator/scene/scene.h"
 
 // What `weft bench effects` measures on.

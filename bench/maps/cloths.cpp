@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "simulator/geometry/surface.h"
 
 namespace weft::bench {

@@ -4,7 +4,7 @@
 #include <array>
 #include <ctime>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "simulator/geometry/settings.h"
 
 namespace weft::bench {

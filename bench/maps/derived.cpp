@@ -17,7 +17,7 @@
 #include "bench/maps/cloths.h"
 #include "bench/oracles/mesh.h"
 #include "bench/oracles/sky_oracle.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "material/maps/flatten.h"
 #include "material/maps/occlusion.h"
 #include "material/opacity/opacity.h"

@@ -11,7 +11,7 @@
 
 #include "bench/maps/cloths.h"
 #include "bench/maps/rules.h"
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "material/filtering/detail.h"
 #include "material/filtering/gloss.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "material/filtering/normal_length.h"
 #include "simulator/geometry/surface.h"
 

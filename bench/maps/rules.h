@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "material/filtering/roughness_mips.h"
 #include "simulator/geometry/settings.h"
 

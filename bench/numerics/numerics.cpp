@@ -15,7 +15,7 @@
 #include "bench/oracles/hard_lights.h"
 #include "bench/oracles/quad_oracle.h"
 #include "bench/oracles/rig.h"
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "solver/in_double/pixel.h"
 
 namespace weft::bench {

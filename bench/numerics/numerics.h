@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "bench/base/study.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::bench {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/in_double/pixel.h"
 #include "solver/method.h"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calibration/camera/lens.h"
-#include "core/camera.h"
+#include "core/rig/camera.h"
 
 namespace weft::test {
 

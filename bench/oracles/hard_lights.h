@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "core/light_field.h"
-#include "core/lights.h"
+#include "core/rig/light_field.h"
+#include "core/rig/lights.h"
 #include "solver/method.h"
 
 namespace weft::test {

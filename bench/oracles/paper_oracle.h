@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "calibration/lights/paper_model.h"
-#include "core/lights.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/lights.h"
 
 namespace weft::test {
 

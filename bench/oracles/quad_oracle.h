@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/in_double/pixel.h"
 
 namespace weft::test {

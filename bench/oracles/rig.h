@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/camera.h"
-#include "core/image.h"
-#include "core/light_field.h"
-#include "core/lights.h"
+#include "core/image/image.h"
+#include "core/rig/camera.h"
+#include "core/rig/light_field.h"
+#include "core/rig/lights.h"
 #include "solver/in_double/pixel.h"
 #include "solver/method.h"
 
@@ -38,7 +38,7 @@ struct Truth {
   std::array<double, 3> albedo;
 };
 
-/// Readings of one tile under a field, by the model of core/light_field.h, and room for what a method
+/// Readings of one tile under a field, by the model of core/rig/light_field.h, and room for what a method
 /// returns.
 class Trial {
  public:

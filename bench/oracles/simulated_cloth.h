@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <map>
 
-#include "core/calibration.h"
-#include "core/raw_frame.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/calibration.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "core/image.h"
-#include "core/raw_frame.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
 #include "simulator/camera/sensor.h"
 
 namespace weft::test {

@@ -7,9 +7,9 @@
 
 #include "bench/program/studies.h"
 #include "bench/server/wide_solve.h"
-#include "core/files.h"
-#include "core/process.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/process.h"
+#include "core/base/temporary_folder.h"
 
 namespace weft::bench {
 namespace {

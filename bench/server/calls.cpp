@@ -18,9 +18,9 @@
 #include "app/server/rig_server.h"
 #include "bench/server/served_rig.h"
 #include "bench/server/wide_solve.h"
-#include "core/parallel.h"
-#include "core/statistics.h"
-#include "core/temporary_folder.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
+#include "core/base/temporary_folder.h"
 #include "library/catalogue.h"
 
 namespace weft::bench {

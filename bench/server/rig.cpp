@@ -27,10 +27,10 @@
 #include "bench/capture/malformed_request.h"
 #include "bench/server/served_rig.h"
 #include "bench/server/wide_solve.h"
-#include "core/descriptor.h"
-#include "core/files.h"
-#include "core/statistics.h"
-#include "core/temporary_folder.h"
+#include "core/base/descriptor.h"
+#include "core/base/files.h"
+#include "core/base/statistics.h"
+#include "core/base/temporary_folder.h"
 
 namespace weft::bench {
 namespace {

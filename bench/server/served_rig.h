@@ -8,9 +8,9 @@
 
 #include "app/server/http/client.h"
 #include "app/server/rig_server.h"
-#include "core/process.h"
-#include "core/result.h"
-#include "core/temporary_folder.h"
+#include "core/base/process.h"
+#include "core/base/result.h"
+#include "core/base/temporary_folder.h"
 #include "virtual_rig/rig_process.h"
 
 namespace weft::bench {

@@ -8,10 +8,10 @@
 #include <random>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
 #include "core/image_io/image_io.h"
-#include "core/json_document.h"
-#include "core/solve.h"
+#include "core/solve/solve.h"
 
 namespace weft::bench {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "calibration/camera/picture.h"
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 
 namespace weft::calibration {
 namespace {

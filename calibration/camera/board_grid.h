@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "calibration/camera/boards.h"
-#include "core/image.h"
+#include "core/image/image.h"
 
 // What finding a checkerboard and finding a ChArUco board share.
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "calibration/camera/pose.h"
-#include "core/image.h"
-#include "core/number.h"
-#include "core/result.h"
+#include "core/base/number.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 
 // Checkerboards and ChArUco boards in photographs.
 

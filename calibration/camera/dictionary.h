@@ -4,7 +4,7 @@
 #include <opencv2/aruco/dictionary.hpp>
 #include <string>
 
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::calibration {
 

@@ -9,9 +9,9 @@
 
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
-#include "core/calibration.h"
-#include "core/camera.h"
-#include "core/image.h"
+#include "core/image/image.h"
+#include "core/rig/calibration.h"
+#include "core/rig/camera.h"
 
 // What a camera's finder shows: the whole frame in few pixels, by an exposure of the camera's own choice. It
 // serves to lay things by, and measures nothing.

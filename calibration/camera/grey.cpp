@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calibration/camera/markers.h"
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 
 namespace weft::calibration {
 namespace {

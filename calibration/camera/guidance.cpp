@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "calibration/camera/normal_equations.h"
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 
 namespace weft::calibration {
 namespace {

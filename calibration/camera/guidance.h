@@ -10,7 +10,7 @@
 #include "calibration/camera/boards.h"
 #include "calibration/camera/lens.h"
 #include "calibration/camera/pose.h"
-#include "core/camera.h"
+#include "core/rig/camera.h"
 
 // Which photograph of a board is worth most after those that there are.
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 
 namespace weft::calibration {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "calibration/camera/spread.h"
-#include "core/camera.h"
-#include "core/lateral_color.h"
+#include "core/rig/camera.h"
+#include "core/rig/lateral_color.h"
 
 namespace weft::calibration {
 

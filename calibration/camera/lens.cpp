@@ -13,7 +13,7 @@
 #include "calibration/camera/bundle.h"
 #include "calibration/camera/opencv_camera.h"
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 
 namespace weft::calibration {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "calibration/camera/boards.h"
 #include "calibration/camera/pose.h"
-#include "core/camera.h"
-#include "core/lights.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/rig/camera.h"
+#include "core/rig/lights.h"
 
 // Lens and pose of the camera from photographs of one board in many poses.
 

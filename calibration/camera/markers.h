@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "calibration/camera/pose.h"
-#include "core/camera.h"
-#include "core/image.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/camera.h"
 
 // Square markers (ArUco, AprilTag) in photographs, and where the sheet lies that they are printed on.
 

@@ -4,7 +4,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "calibration/camera/pose.h"
-#include "core/camera.h"
+#include "core/rig/camera.h"
 
 // A CameraModel as OpenCV takes it.
 

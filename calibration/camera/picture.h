@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/camera/pose.h"
-#include "core/image.h"
+#include "core/image/image.h"
 
 // What the detectors share.
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::calibration {
 

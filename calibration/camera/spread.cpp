@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "calibration/camera/picture.h"
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 
 namespace weft::calibration {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "calibration/camera/boards.h"
 #include "calibration/camera/pose.h"
-#include "core/camera.h"
-#include "core/point_spread.h"
-#include "core/raw_frame.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/camera.h"
+#include "core/rig/point_spread.h"
 
 namespace weft::calibration {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "calibration/camera/pose.h"
-#include "core/camera.h"
-#include "core/lights.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/camera.h"
+#include "core/rig/lights.h"
 
 namespace weft::calibration {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "core/lights.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/lights.h"
 
 namespace weft::calibration {
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "calibration/camera/markers.h"
-#include "core/calibration.h"
-#include "core/camera.h"
-#include "core/lights.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/rig/calibration.h"
+#include "core/rig/camera.h"
+#include "core/rig/lights.h"
 
 namespace weft::calibration {
 

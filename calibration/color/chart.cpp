@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 
 namespace weft::calibration {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "calibration/color/chart_reference.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 
 // The 24-patch chart in a picture.
 

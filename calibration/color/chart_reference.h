@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/color_spaces.h"
+#include "core/image/color_spaces.h"
 
 namespace weft::calibration {
 

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/color_transform.h"
-#include "core/statistics.h"
+#include "core/base/statistics.h"
+#include "core/rig/color_transform.h"
 
 namespace weft::calibration {
 namespace {

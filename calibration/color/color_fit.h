@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/color_spaces.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/color_spaces.h"
+#include "core/rig/calibration.h"
 
 namespace weft::calibration {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "core/camera.h"
-#include "core/lights.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/rig/camera.h"
+#include "core/rig/lights.h"
 
 namespace weft::calibration {
 

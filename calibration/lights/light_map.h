@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "calibration/lights/paper_model.h"
-#include "core/image.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 
 namespace weft::calibration {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "calibration/lights/reading_cost.h"
-#include "core/lights.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/lights.h"
 
 // What the fit of lights (physical.h) varies, in blocks as Ceres wants them.
 

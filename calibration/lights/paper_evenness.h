@@ -5,8 +5,8 @@
 
 #include "calibration/camera/pose.h"
 #include "calibration/lights/sheet.h"
-#include "core/camera.h"
-#include "core/raw_frame.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/camera.h"
 
 namespace weft::calibration {
 

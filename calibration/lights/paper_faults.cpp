@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 
 namespace weft::calibration {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "calibration/camera/markers.h"
 #include "calibration/lights/sheet.h"
-#include "core/camera.h"
-#include "core/lights.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/camera.h"
+#include "core/rig/lights.h"
 
 namespace weft::calibration {
 

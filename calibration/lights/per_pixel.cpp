@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace weft::calibration {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "calibration/lights/paper_model.h"
-#include "core/lights.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/rig/lights.h"
 
 namespace weft::calibration {
 

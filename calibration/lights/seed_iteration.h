@@ -6,7 +6,7 @@
 
 #include "calibration/lights/light_map.h"
 #include "calibration/lights/paper_model.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::calibration {
 

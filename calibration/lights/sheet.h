@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "calibration/camera/pose.h"
-#include "core/camera.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/camera.h"
 
 namespace weft::calibration {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
-#include "core/raw_frame.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
 
 namespace weft::calibration {
 

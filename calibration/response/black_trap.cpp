@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/statistics.h"
-#include "core/veil.h"
+#include "core/base/statistics.h"
+#include "core/rig/veil.h"
 
 namespace weft::calibration {
 namespace {

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/rig/calibration.h"
 
 namespace weft::calibration {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/response/block_light.h"
 
-#include "core/radiometry.h"
+#include "core/rig/radiometry.h"
 
 namespace weft::calibration {
 namespace {

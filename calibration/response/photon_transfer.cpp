@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "calibration/response/block_light.h"
-#include "core/radiometry.h"
+#include "core/rig/radiometry.h"
 
 namespace weft::calibration {
 namespace {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
 
 // Gain and read noise from how the variance of a reading grows with its mean (Janesick, "Photon Transfer",
 // SPIE 2007; EMVA standard 1288, release 3.1, section 6.6). Half the variance of the difference of two frames

@@ -10,8 +10,8 @@
 
 #include "calibration/response/block_light.h"
 #include "calibration/response/photon_transfer.h"
-#include "core/image.h"
-#include "core/raw_frame.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
 
 namespace weft::calibration {
 

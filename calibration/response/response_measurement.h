@@ -8,8 +8,8 @@
 #include "calibration/response/photon_transfer.h"
 #include "calibration/response/response_frames.h"
 #include "calibration/response/superposition.h"
-#include "core/calibration.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
 
 namespace weft::calibration {
 

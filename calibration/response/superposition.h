@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calibration/response/block_light.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 // Linearity without a known reflectance: two LEDs together give the sum of what each gives, so a response
 // that is linear adds up (the flux addition method of detector radiometry; Sanders, J. Res. NBS 76A, 1972).

@@ -8,7 +8,7 @@
 
 #include "capture/board/led_board.h"
 #include "capture/board/reply_parser.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

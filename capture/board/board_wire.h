@@ -9,7 +9,7 @@
 
 #include "capture/board/reply_parser.h"
 #include "capture/board/serial_port.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "capture/devices.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

@@ -17,7 +17,7 @@
 #include <sstream>
 #include <thread>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::capture {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/descriptor.h"
-#include "core/result.h"
+#include "core/base/descriptor.h"
+#include "core/base/result.h"
 
 struct sp_port;
 

@@ -15,8 +15,8 @@
 #include "capture/camera/photograph_evidence.h"
 #include "capture/camera/worker_process.h"
 #include "capture/devices.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

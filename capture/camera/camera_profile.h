@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/fields.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 namespace weft::capture {
 

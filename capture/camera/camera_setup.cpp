@@ -12,9 +12,9 @@
 
 #include "capture/camera/camera_values.h"
 #include "capture/camera/usb_serial.h"
-#include "core/iso_time.h"
-#include "core/number.h"
-#include "core/same_camera.h"
+#include "core/base/iso_time.h"
+#include "core/base/number.h"
+#include "core/rig/same_camera.h"
 
 namespace weft::capture {
 namespace {

@@ -10,7 +10,7 @@
 #include "capture/camera/gphoto_camera.h"
 #include "capture/camera/photograph_evidence.h"
 #include "capture/devices.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

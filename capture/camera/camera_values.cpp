@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/number.h"
+#include "core/base/number.h"
 
 namespace weft::capture {
 namespace {

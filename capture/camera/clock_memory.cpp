@@ -3,7 +3,7 @@
 
 #include <system_error>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 namespace weft::capture {
 namespace {

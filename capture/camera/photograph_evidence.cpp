@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "core/exposure_words.h"
-#include "core/same_camera.h"
+#include "core/rig/exposure_words.h"
+#include "core/rig/same_camera.h"
 
 namespace weft::capture {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "capture/camera/photograph_facts.h"
 #include "capture/devices.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/files.h"
-#include "core/number.h"
+#include "core/base/files.h"
+#include "core/base/number.h"
 
 namespace weft::capture {
 namespace {

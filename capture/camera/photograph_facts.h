@@ -7,7 +7,7 @@
 #include <string>
 
 #include "capture/raw/tiff_tags.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

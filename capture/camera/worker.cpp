@@ -18,9 +18,9 @@
 #include "capture/camera/gphoto_camera.h"
 #include "capture/camera/request_lines.h"
 #include "capture/camera/worker_lines.h"
-#include "core/error_json.h"
-#include "core/files.h"
-#include "core/iso_time.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
+#include "core/describe/error_json.h"
 
 namespace weft::capture {
 namespace {

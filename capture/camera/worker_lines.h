@@ -2,8 +2,8 @@
 #pragma once
 
 #include "capture/devices.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

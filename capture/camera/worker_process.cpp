@@ -15,7 +15,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::capture {
 namespace {

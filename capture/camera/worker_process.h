@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/descriptor.h"
-#include "core/process.h"
-#include "core/result.h"
+#include "core/base/descriptor.h"
+#include "core/base/process.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/raw_frame.h"
+#include "core/image/raw_frame.h"
 
 namespace weft::capture {
 

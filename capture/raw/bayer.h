@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "core/raw_frame.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/raw_frame.h"
 
 namespace weft::capture {
 

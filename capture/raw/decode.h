@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "core/image.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
 
 namespace weft::capture {
 

@@ -19,7 +19,7 @@
 
 #include "capture/raw/bayer.h"
 #include "capture/raw/tiff_tags.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::capture {
 namespace {

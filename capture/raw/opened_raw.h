@@ -12,8 +12,8 @@
 
 #include "capture/raw/dng_layout.h"
 #include "capture/raw/raw_info.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 
 namespace weft::capture {
 

@@ -8,7 +8,7 @@
 #include "capture/camera/camera_link.h"
 #include "capture/devices.h"
 #include "capture/rig.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "capture/devices.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/raw_frame.h"
 
 namespace weft::capture {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/radiometry.h"
+#include "core/rig/radiometry.h"
 
 namespace weft::capture {
 namespace {

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/image.h"
-#include "core/raw_frame.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/calibration.h"
 
 namespace weft::capture {
 

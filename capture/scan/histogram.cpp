@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/radiometry.h"
+#include "core/rig/radiometry.h"
 
 namespace weft::capture {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "capture/scan/scan.h"
-#include "core/raw_frame.h"
+#include "core/image/raw_frame.h"
 
 namespace weft::capture {
 
@@ -17,7 +17,7 @@ std::array<RawHistogram, 3> histogram_rgb(const RawFrame& frame);
 struct Brightness {
   double bright = 0;     ///< 99.9 percent of the photosites are below
   double brightest = 0;  ///< 99.999 percent
-  double clipped = 0;    ///< share that the solver takes to be full (kSaturatedFrom of core/radiometry.h)
+  double clipped = 0;    ///< share that the solver takes to be full (kSaturatedFrom of core/rig/radiometry.h)
 };
 Brightness brightness_of(const RawFrame& frame);
 

@@ -11,9 +11,9 @@
 #include <cerrno>
 #include <optional>
 
-#include "core/files.h"
-#include "core/iso_time.h"
-#include "core/partial_name.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
+#include "core/base/partial_name.h"
 
 namespace weft::capture {
 namespace {

@@ -10,9 +10,9 @@
 #include "capture/devices.h"
 #include "capture/scan/plan.h"
 #include "capture/scan/scan.h"
-#include "core/descriptor.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/descriptor.h"
+#include "core/base/result.h"
+#include "core/rig/session.h"
 
 namespace weft::capture {
 

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <utility>
 
-#include "core/statistics.h"
-#include "core/vec.h"
+#include "core/base/statistics.h"
+#include "core/base/vec.h"
 
 namespace weft::capture {
 namespace {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/percent.h"
-#include "core/statistics.h"
+#include "core/base/percent.h"
+#include "core/base/statistics.h"
 
 namespace weft::capture {
 namespace {

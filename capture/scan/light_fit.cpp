@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/light_field.h"
-#include "core/statistics.h"
+#include "core/base/statistics.h"
+#include "core/rig/light_field.h"
 
 namespace weft::capture {
 namespace {

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "capture/scan/glance.h"
-#include "core/calibration.h"
-#include "core/cloth_pose.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/rig/calibration.h"
+#include "core/rig/cloth_pose.h"
 
 namespace weft::capture {
 

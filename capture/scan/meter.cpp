@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "capture/scan/plan.h"
-#include "core/exposed.h"
-#include "core/exposure_words.h"
+#include "core/rig/exposed.h"
+#include "core/rig/exposure_words.h"
 
 namespace weft::capture {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "capture/scan/histogram.h"
 #include "capture/scan/light_fit.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

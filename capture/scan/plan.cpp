@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/exposure_words.h"
+#include "core/rig/exposure_words.h"
 
 namespace weft::capture {
 namespace {

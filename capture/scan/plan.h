@@ -7,8 +7,8 @@
 
 #include "capture/devices.h"
 #include "capture/scan/scan.h"
-#include "core/json_document.h"
-#include "core/session.h"
+#include "core/base/json_document.h"
+#include "core/rig/session.h"
 
 namespace weft::capture {
 

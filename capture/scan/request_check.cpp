@@ -8,8 +8,8 @@
 #include <numeric>
 #include <sstream>
 
-#include "core/files.h"
-#include "core/same_camera.h"
+#include "core/base/files.h"
+#include "core/rig/same_camera.h"
 
 namespace weft::capture {
 namespace {

@@ -7,8 +7,8 @@
 #include "capture/devices.h"
 #include "capture/scan/plan.h"
 #include "capture/scan/scan.h"
-#include "core/calibration.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
 
 namespace weft::capture {
 

@@ -23,9 +23,9 @@
 #include "capture/scan/request_check.h"
 #include "capture/scan/second_copy.h"
 #include "capture/scan/shooter.h"
-#include "core/exposed.h"
-#include "core/exposure_words.h"
-#include "core/suits.h"
+#include "core/rig/exposed.h"
+#include "core/rig/exposure_words.h"
+#include "core/rig/suits.h"
 
 namespace weft::capture {
 namespace {

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "capture/devices.h"
-#include "core/calibration.h"
-#include "core/cloth_pose.h"
-#include "core/json_document.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
+#include "core/rig/cloth_pose.h"
+#include "core/rig/session.h"
 
 namespace weft::capture {
 

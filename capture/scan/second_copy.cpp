@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "capture/scan/journal.h"
-#include "core/descriptor.h"
-#include "core/files.h"
-#include "core/text.h"
+#include "core/base/descriptor.h"
+#include "core/base/files.h"
+#include "core/base/text.h"
 
 namespace weft::capture {
 namespace {

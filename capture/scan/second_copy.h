@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "core/json_document.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/rig/session.h"
 
 namespace weft::capture {
 

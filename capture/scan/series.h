@@ -9,7 +9,7 @@
 #include "capture/scan/meter.h"
 #include "capture/scan/scan.h"
 #include "capture/scan/shooter.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

@@ -12,7 +12,7 @@
 #include "capture/devices.h"
 #include "capture/scan/frame_check.h"
 #include "capture/scan/scan.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::capture {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/color_spaces.h"
+#include "core/image/color_spaces.h"
 
 namespace weft {
 namespace {

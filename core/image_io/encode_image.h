@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 
 namespace weft {
 

@@ -12,7 +12,7 @@
 #include <set>
 #include <string_view>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace weft {
 namespace {

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "core/descriptor.h"
-#include "core/image.h"
+#include "core/base/descriptor.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "core/image_io/image_io.h"
-#include "core/result.h"
 
 namespace weft {
 

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/compression.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/compression.h"
+#include "core/image/image.h"
 
 // Image files: EXR, TIFF, PNG, and JPEG for reading. Their libraries stay behind this header. Values are what
 // the file holds, without transfer function or premultiplication by alpha; full scale of integers is 1.

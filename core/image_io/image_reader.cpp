@@ -8,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/image_source.h"
 

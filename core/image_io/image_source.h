@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "core/image.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "core/image_io/image_io.h"
-#include "core/result.h"
 
 // What image_reader.cpp knows of the formats.
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/file_sink.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/image_sink.h"

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/color_profile.h"
 #include "core/image_io/grey_jpeg.h"
 #include "core/image_io/image_source.h"

@@ -2,7 +2,7 @@
 #include <cerrno>
 #include <cstdio>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/color_profile.h"
 #include "core/image_io/image_source.h"
 #include "core/image_io/png_library.h"

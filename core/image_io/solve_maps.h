@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "core/image.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "core/image_io/image_io.h"
-#include "core/result.h"
 
 namespace weft {
 
@@ -19,7 +19,7 @@ class SolveMaps {
   static Result<SolveMaps> open(const std::filesystem::path& folder);
 
   Size size() const { return size_; }
-  Result<Image<std::uint16_t>> status() const;  ///< bits of StatusBit (core/solve_record.h)
+  Result<Image<std::uint16_t>> status() const;  ///< bits of StatusBit (core/solve/solve_record.h)
   Result<LoadedImage> normal() const;           ///< X, Y, Z: unit, rig frame
   Result<LoadedImage> albedo() const;           ///< R, G, B
   /// R, G, B of the albedo and normal_deg; their parts R.noise ..., R.model ... and, where the calibration

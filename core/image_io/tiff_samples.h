@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "core/image_io/image_io.h"
 
 namespace weft {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/exr_channels.h"
 #include "core/image_io/image_source.h"
 #include "core/image_io/pack_row.h"

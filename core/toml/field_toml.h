@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/field_json.h"
-#include "core/fields.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/describe/field_json.h"
+#include "core/describe/fields.h"
 #include "core/toml/toml_json.h"
 
 namespace weft {

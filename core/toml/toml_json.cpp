@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/result.h"
+#include "core/base/result.h"
 
 // Zip archives whose entries are stored as they are (PKWARE, APPNOTE 6.3.10), in the two dialects that
 // formats of materials ask for.

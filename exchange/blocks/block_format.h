@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 // Block formats of graphics hardware: 4 x 4 texels in 8 or 16 bytes (Microsoft, "Texture Block Compression in
 // Direct3D 11"; Khronos Data Format Specification 1.3, chapters 18 to 20).

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "exchange/blocks/block_format.h"
 
 // DirectDraw Surface: a header of 128 or 148 bytes, then the blocks of each level from the largest down

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace weft::exchange {
 namespace {

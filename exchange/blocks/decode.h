@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "exchange/blocks/block_format.h"
 
 namespace weft::exchange {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "exchange/blocks/strip.h"
 
 namespace weft::exchange {

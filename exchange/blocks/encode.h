@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "exchange/blocks/block_format.h"
 
 namespace weft::exchange {

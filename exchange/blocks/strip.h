@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 // A row of blocks on its way into an encoder.
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "exchange/document.h"
 
 // A material as binary glTF 2.0 (Khronos, 2.0.1): a rectangle in the xy plane that looks along z, in metres.

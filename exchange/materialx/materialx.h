@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "exchange/document.h"
 
 // Materials as MaterialX 1.39 text (Academy Software Foundation; OpenPBR 1.1, Autodesk Standard

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exchange/materialx/xml.h"
 
-#include "core/text.h"
+#include "core/base/text.h"
 
 namespace weft::exchange {
 

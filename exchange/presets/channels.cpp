@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/text.h"
+#include "core/base/text.h"
 
 namespace weft::exchange {
 namespace {

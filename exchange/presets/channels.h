@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/gloss_scale.h"
-#include "core/image.h"
+#include "core/image/image.h"
+#include "core/rig/gloss_scale.h"
 
 // What a channel of an exported file may hold, and how it is computed from the maps of a cloth.
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/fields.h"
-#include "core/image.h"
+#include "core/describe/fields.h"
+#include "core/image/image.h"
 #include "exchange/presets/channels.h"
 #include "exchange/presets/mips.h"
 #include "exchange/presets/preset.h"

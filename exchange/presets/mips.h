@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "exchange/presets/channels.h"
 #include "exchange/presets/preset.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "exchange/presets/channels.h"
 #include "exchange/presets/preset.h"
 

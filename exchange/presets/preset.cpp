@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "core/text.h"
+#include "core/base/text.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 #include "exchange/document.h"

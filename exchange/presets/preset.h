@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/result.h"
 #include "core/image_io/image_io.h"
-#include "core/result.h"
 #include "exchange/blocks/block_format.h"
 #include "exchange/presets/channels.h"
 

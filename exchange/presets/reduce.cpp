@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace weft::exchange {
 namespace {

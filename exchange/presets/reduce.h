@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 namespace weft::exchange {
 

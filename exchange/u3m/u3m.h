@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "exchange/document.h"
 
 // A material as U3M 1.1 (Vizoo, the JSON schema and the rules beside it) and its archive U3MA.

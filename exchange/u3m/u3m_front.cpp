@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/color_spaces.h"
+#include "core/image/color_spaces.h"
 #include "exchange/image_kind.h"
 
 namespace weft::exchange {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "exchange/document.h"
 
 // A material as USD text with UsdPreviewSurface 2.6 (Pixar): a rectangle in the xy plane that looks along z.

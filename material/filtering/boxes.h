@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 // Which pixels of a picture a texel of a smaller level covers, in sizes that graphics hardware has.
 

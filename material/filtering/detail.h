@@ -5,9 +5,9 @@
 #include <optional>
 #include <string_view>
 
-#include "core/image.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "material/surface.h"
 
 // A cloth as a layer over another material: its weave without its colour, its tilt and its height.

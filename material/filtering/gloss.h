@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gloss_scale.h"
+#include "core/rig/gloss_scale.h"
 
-// What two lobes make together, on the scales of core/gloss_scale.h.
+// What two lobes make together, on the scales of core/rig/gloss_scale.h.
 
 namespace weft::material {
 

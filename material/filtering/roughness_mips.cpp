@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/parallel.h"
-#include "core/solve_record.h"
+#include "core/base/parallel.h"
+#include "core/solve/solve_record.h"
 #include "material/filtering/boxes.h"
 #include "material/filtering/normal_length.h"
 

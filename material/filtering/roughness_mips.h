@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "material/surface.h"
 
 // Mips that reflect as what lies beneath them does: where normals differ below a texel their spread becomes

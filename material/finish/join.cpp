@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::material {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "material/lattice/lattice.h"
 #include "material/surface.h"
 

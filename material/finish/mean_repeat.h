@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 namespace weft::material {
 

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/fourier.h"
-#include "core/parallel.h"
-#include "core/vec.h"
+#include "core/base/parallel.h"
+#include "core/base/vec.h"
+#include "core/image/fourier.h"
 
 namespace weft::material {
 namespace {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/parallel.h"
-#include "core/solve_record.h"
-#include "core/statistics.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
+#include "core/solve/solve_record.h"
 #include "material/cubic.h"
 #include "material/finish/join.h"
 #include "material/finish/part.h"

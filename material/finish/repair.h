@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "material/lattice/lattice.h"
 #include "material/surface.h"
 

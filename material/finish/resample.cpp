@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/parallel.h"
-#include "core/solve_record.h"
-#include "core/vec.h"
+#include "core/base/parallel.h"
+#include "core/base/vec.h"
+#include "core/solve/solve_record.h"
 #include "material/cubic.h"
 
 namespace weft::material {

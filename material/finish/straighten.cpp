@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <string>
 
-#include "core/parallel.h"
-#include "core/vec.h"
+#include "core/base/parallel.h"
+#include "core/base/vec.h"
 #include "material/finish/resample.h"
 #include "material/usable.h"
 

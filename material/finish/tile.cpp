@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "core/solve_record.h"
-#include "core/statistics.h"
-#include "core/vec.h"
+#include "core/base/statistics.h"
+#include "core/base/vec.h"
+#include "core/solve/solve_record.h"
 #include "material/finish/part.h"
 #include "material/finish/periodic_height.h"
 #include "material/finish/seam.h"

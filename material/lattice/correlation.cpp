@@ -6,10 +6,10 @@
 #include <complex>
 #include <cstddef>
 
-#include "core/fourier.h"
-#include "core/parallel.h"
-#include "core/solve_record.h"
-#include "core/vec.h"
+#include "core/base/parallel.h"
+#include "core/base/vec.h"
+#include "core/image/fourier.h"
+#include "core/solve/solve_record.h"
 #include "material/cubic.h"
 #include "material/smooth.h"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "material/surface.h"
 #include "material/vec2.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "material/lattice/search.h"
 #include "material/lattice/yarns.h"
 #include "material/usable.h"

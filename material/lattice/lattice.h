@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "material/surface.h"
 #include "material/vec2.h"
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "material/lattice/search.h"
 
 namespace weft::material {

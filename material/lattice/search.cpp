@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/statistics.h"
-#include "core/vec.h"
+#include "core/base/statistics.h"
+#include "core/base/vec.h"
 
 namespace weft::material {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::material {
 namespace {

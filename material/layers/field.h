@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 namespace weft::material {
 

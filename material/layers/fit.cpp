@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "material/layers/lay.h"
 
 namespace weft::material {

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "material/layers/field.h"
 #include "material/layers/parameters.h"
 

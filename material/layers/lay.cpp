@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/parallel.h"
-#include "core/vec.h"
+#include "core/base/parallel.h"
+#include "core/base/vec.h"
 #include "material/filtering/gloss.h"
 
 namespace weft::material {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "material/layers/field.h"
 
 // Masks that follow the relief: dust lies in what is deep, wear takes off what is high.

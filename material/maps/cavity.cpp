@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "material/maps/gaussian_grid.h"
 
 namespace weft::material {

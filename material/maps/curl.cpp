@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/parallel.h"
-#include "core/solve_record.h"
-#include "core/vec.h"
+#include "core/base/parallel.h"
+#include "core/base/vec.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::material {
 namespace {

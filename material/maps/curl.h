@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 
 namespace weft::material {
 

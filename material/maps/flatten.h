@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "material/maps/gaussian_grid.h"
 #include "material/maps/slope_polynomial.h"
 

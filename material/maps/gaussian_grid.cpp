@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace weft::material {
 namespace {

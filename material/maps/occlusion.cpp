@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/parallel.h"
-#include "core/vec.h"
+#include "core/base/parallel.h"
+#include "core/base/vec.h"
 #include "material/maps/line_sweep.h"
 
 namespace weft::material {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::material {
 namespace {

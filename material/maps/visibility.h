@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 // What openness does to light (Chan, "Material advances in Call of Duty: WWII", 2018, eq. 43 to 60): numbers
 // a pixel. `openness` is that of Occlusion, 0 to 1; albedo is a channel's, 0 to 1. Values outside are

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/parallel.h"
-#include "core/solve_record.h"
+#include "core/base/parallel.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::material {
 namespace {

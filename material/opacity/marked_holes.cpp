@@ -2,7 +2,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "material/opacity/opacity.h"
 
 namespace weft::material {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/parallel.h"
-#include "core/statistics.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "material/filtering/boxes.h"
 #include "material/opacity/opacity.h"
 

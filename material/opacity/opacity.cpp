@@ -8,10 +8,10 @@
 #include <cmath>
 #include <utility>
 
-#include "core/parallel.h"
-#include "core/solve_record.h"
-#include "core/statistics.h"
-#include "core/vec.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
+#include "core/base/vec.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::material {
 namespace {

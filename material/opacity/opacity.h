@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "material/surface.h"
 
 // How much of a pixel is cloth: 0 a hole, 1 cloth. Seen along the camera's axis; a cloth of 0.3 mm shifts its

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "material/validation/validate.h"
 
 // The checks of validate(), by what they look at.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 #include "material/validation/checks.h"
 
 namespace weft::material {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/parallel.h"
-#include "core/solve_record.h"
-#include "core/statistics.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
+#include "core/solve/solve_record.h"
 #include "material/validation/checks.h"
 
 namespace weft::material {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
-#include "core/verdict.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/solve/verdict.h"
 #include "material/surface.h"
 
 // Whether maps are those of a cloth, and fit to be put on a material. Nothing here corrects a map: a value

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/raw_frame.h"
+#include "core/image/raw_frame.h"
 #include "pipeline/photographs.h"
 
 namespace weft::pipeline {

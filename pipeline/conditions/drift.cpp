@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "core/parallel.h"
-#include "core/statistics.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
 
 namespace weft::pipeline {
 namespace {

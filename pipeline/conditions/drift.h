@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/lights.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/rig/lights.h"
 #include "pipeline/photographs.h"
 #include "solver/conditions/light_change.h"
 

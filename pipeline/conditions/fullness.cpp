@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 
 namespace weft::pipeline {
 namespace {

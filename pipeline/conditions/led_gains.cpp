@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 #include "pipeline/left_out.h"
 #include "pipeline/tile_reader.h"
 #include "solver/in_double/pixel.h"

@@ -3,13 +3,13 @@
 
 #include <vector>
 
-#include "core/photosites.h"
-#include "core/raw_frame.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/photosites.h"
 #include "pipeline/photographs.h"
 
 namespace weft::pipeline {
 
-/// The photosites that say nothing of light (core/photosites.h), sorted, each once: hot in the dark shot,
+/// The photosites that say nothing of light (core/rig/photosites.h), sorted, each once: hot in the dark shot,
 /// dead in the lit ones, or `known` to be bad.
 std::vector<Photosite> find_bad_photosites(const Mosaics& mosaics, const std::vector<Photosite>& known,
                                            int threads);

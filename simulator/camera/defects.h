@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "simulator/camera/settings.h"
 
 namespace weft::simulator {

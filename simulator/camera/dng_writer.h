@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "core/raw_frame.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/raw_frame.h"
 
 namespace weft::simulator {
 
@@ -38,15 +38,15 @@ struct DngTags {
 /// 10 m, make and model of together up to 63 ASCII characters, a serial number of as many. What is zero or
 /// empty is left out.
 ///
-/// The file is written aside and renamed (core/files.h). Errors: kUsage where the frame breaks a rule above;
-/// kCannotCreate and kInputOutput with the system's reason.
+/// The file is written aside and renamed (core/base/files.h). Errors: kUsage where the frame breaks a rule
+/// above; kCannotCreate and kInputOutput with the system's reason.
 Result<void> write_dng(const std::filesystem::path& file, const RawFrame& frame, const DngTags& tags = {});
 
 /// The bytes of that file, in memory. kUsage as write_dng().
 Result<std::vector<std::uint8_t>> dng_bytes(const RawFrame& frame, const DngTags& tags = {});
 
 /// The same file row band by row band. It is not written aside: make it in a folder that is published when
-/// it is complete (core/files.h). Errors as write_dng(); a file that is there is kCannotCreate.
+/// it is complete (core/base/files.h). Errors as write_dng(); a file that is there is kCannotCreate.
 class DngWriter {
  public:
   /// `frame` says everything but the counts, which are not looked at.

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "core/camera.h"
-#include "core/color_spaces.h"
-#include "core/image.h"
+#include "core/image/color_spaces.h"
+#include "core/image/image.h"
+#include "core/rig/camera.h"
 #include "simulator/camera/optics.h"
 #include "simulator/camera/settings.h"
 

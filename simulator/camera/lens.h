@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "core/camera.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/rig/camera.h"
 #include "simulator/camera/settings.h"
 
 namespace weft::simulator {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "simulator/camera/settings.h"
 
 namespace weft::simulator {

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <numeric>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::simulator {
 namespace {

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "core/camera.h"
-#include "core/image.h"
-#include "core/lights.h"
+#include "core/image/image.h"
+#include "core/rig/camera.h"
+#include "core/rig/lights.h"
 #include "simulator/camera/settings.h"
 
 namespace weft::simulator {

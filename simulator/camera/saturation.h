@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "simulator/camera/settings.h"
 
 namespace weft::simulator {

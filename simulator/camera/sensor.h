@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/calibration.h"
+#include "core/rig/calibration.h"
 #include "simulator/camera/settings.h"
 #include "simulator/sampling/random.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/color_spaces.h"
-#include "core/image.h"
+#include "core/image/color_spaces.h"
+#include "core/image/image.h"
 #include "simulator/camera/settings.h"
 
 namespace weft::simulator {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "simulator/effects/passes.h"
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"

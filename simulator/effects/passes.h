@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "core/color_spaces.h"
-#include "core/image.h"
-#include "core/result.h"
-#include "core/tiles.h"
+#include "core/base/result.h"
+#include "core/image/color_spaces.h"
+#include "core/image/image.h"
+#include "core/image/tiles.h"
 #include "simulator/camera/defects.h"
 #include "simulator/geometry/surface_point.h"
 #include "simulator/light/incidence.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "core/raw_frame.h"
+#include "core/image/raw_frame.h"
 #include "simulator/effects/effects.h"
 #include "simulator/effects/random_key.h"
 

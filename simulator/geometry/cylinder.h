@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "simulator/geometry/sphere.h"
 #include "simulator/geometry/surface_point.h"
 

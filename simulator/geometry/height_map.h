@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "simulator/geometry/picture_grid.h"
 #include "simulator/geometry/settings.h"
 #include "simulator/geometry/surface_point.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "simulator/geometry/settings.h"
 #include "simulator/geometry/surface_point.h"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/image.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "simulator/geometry/settings.h"
 
 namespace weft::simulator {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "core/color_spaces.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/color_spaces.h"
+#include "core/image/image.h"
 #include "simulator/geometry/picture_grid.h"
 #include "simulator/geometry/settings.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 
 // What a scene says about the shape of the cloth: plain values.
 

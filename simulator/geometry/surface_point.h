@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 // What every shape of cloth says about a point of the table, and about itself as a whole.
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/lights.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/lights.h"
 
 namespace weft::simulator {
 

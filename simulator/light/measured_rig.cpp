@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "core/files.h"
-#include "core/json_document.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
 
 namespace weft::simulator {
 namespace {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/lights.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/rig/lights.h"
 
 namespace weft::simulator {
 

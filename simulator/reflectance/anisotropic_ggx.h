@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "simulator/reflectance/ggx.h"
 
 namespace weft::simulator {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 // What every reflectance model works with. Directions are unit vectors in the surface's own frame: z is the
 // normal n, x the tangent, along the fibres where a model has any. l points to the light, v to the viewer,

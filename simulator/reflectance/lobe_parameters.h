@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/color_spaces.h"
+#include "core/image/color_spaces.h"
 #include "simulator/reflectance/reflectance.h"
 
 namespace weft::simulator {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/color_spaces.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/image/color_spaces.h"
 
 namespace weft::simulator {
 

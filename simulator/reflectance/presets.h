@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/color_spaces.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/color_spaces.h"
 #include "simulator/reflectance/reflectance.h"
 
 namespace weft::simulator {

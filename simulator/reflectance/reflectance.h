@@ -3,8 +3,8 @@
 
 #include <variant>
 
-#include "core/color_spaces.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/image/color_spaces.h"
 #include "simulator/reflectance/anisotropic_ggx.h"
 #include "simulator/reflectance/beckmann.h"
 #include "simulator/reflectance/blinn_phong.h"

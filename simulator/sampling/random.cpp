@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::simulator {
 

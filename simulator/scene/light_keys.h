@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "simulator/light/measured_rig.h"
 #include "simulator/scene/camera_keys.h"
 #include "simulator/scene/scene.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <variant>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "simulator/geometry/print.h"
 #include "simulator/reflectance/presets.h"
 #include "simulator/scene/geometry_keys.h"

@@ -5,9 +5,9 @@
 #include <variant>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/lights.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
+#include "core/rig/lights.h"
 #include "simulator/camera/lens.h"
 #include "simulator/camera/sensor.h"
 #include "simulator/scene/scene.h"

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/cloth_pose.h"
-#include "core/color_spaces.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/color_spaces.h"
+#include "core/rig/cloth_pose.h"
 #include "simulator/camera/settings.h"
 #include "simulator/geometry/print.h"
 #include "simulator/geometry/settings.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading scenes with their pictures: the one file of simulator/scene that reads images.
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "simulator/scene/scene_reader.h"
 

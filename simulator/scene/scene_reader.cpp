@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-#include "core/text.h"
+#include "core/base/text.h"
 #include "simulator/scene/scene_keys.h"
 
 namespace weft::simulator {

@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/color_spaces.h"
-#include "core/image.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/color_spaces.h"
+#include "core/image/image.h"
 #include "simulator/scene/scene.h"
 #include "simulator/scene/scene_key.h"
 #include "simulator/spectra/spectrum.h"

@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "simulator/scene/scene.h"
 #include "simulator/scene/scene_key.h"
 

@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "core/color_spaces.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/color_spaces.h"
 #include "simulator/spectra/spectrum.h"
 
 // What three channels make of a reflectance. The camera under a LED and the standard observer under daylight

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::simulator {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/base/result.h"
 
 // Markers and boards as OpenCV defines them (cv::aruco), in cells instead of pixels.
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/color_spaces.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/color_spaces.h"
 #include "simulator/targets/settings.h"
 
 // What is printed: upright rectangles of one ink each. Boards, charts, scales and markers are all such, so

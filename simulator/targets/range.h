@@ -3,7 +3,7 @@
 
 #include <initializer_list>
 
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::simulator {
 

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 // What lies on the table for calibration, beside the cloth or instead of it.
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "simulator/targets/pattern.h"
 #include "simulator/targets/settings.h"
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "core/color_spaces.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/color_spaces.h"
 #include "simulator/spectra/spectrum.h"
 #include "simulator/targets/pattern.h"
 #include "simulator/targets/settings.h"

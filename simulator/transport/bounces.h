@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "core/color_spaces.h"
-#include "core/image.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/color_spaces.h"
+#include "core/image/image.h"
 #include "simulator/transport/height_mesh.h"
 #include "simulator/transport/rays.h"
 

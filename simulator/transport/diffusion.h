@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 namespace weft::simulator {
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <span>
 
-#include "core/image.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "simulator/transport/rays.h"
 
 // The cloth's surface as rays meet it: a mesh over a tile of pixels and its halo.

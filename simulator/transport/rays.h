@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "simulator/sampling/sobol.h"
 
 // Rays of a pixel: how many, how far, and where they go.

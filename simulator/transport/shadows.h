@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/image.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "simulator/transport/height_mesh.h"
 #include "simulator/transport/rays.h"
 

@@ -7,13 +7,14 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
-#include "core/light_field.h"
-#include "core/lights.h"
-#include "core/raw_frame.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/light_field.h"
+#include "core/rig/lights.h"
 
 // How much brighter a LED was in its shot than its calibration says: from a shot that was taken again, or
-// from white patches in the frame. Readings are those of core/radiometry.h; what is not finite is not used.
+// from white patches in the frame. Readings are those of core/rig/radiometry.h; what is not finite is not
+// used.
 
 namespace weft::solver {
 

@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/parallel.h"
-#include "core/statistics.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "solver/diagnosis/robust_fit.h"
 
 namespace weft::solver {

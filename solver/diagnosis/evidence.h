@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/radiometry.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/radiometry.h"
 
 namespace weft::solver {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 #include "solver/in_double/pixel.h"
 
 namespace weft::solver {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 #include "solver/in_double/pixel.h"
 
 namespace weft::solver {

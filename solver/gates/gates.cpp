@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "core/solve_record.h"
-#include "core/statistics.h"
-#include "core/vec.h"
+#include "core/base/statistics.h"
+#include "core/base/vec.h"
+#include "core/solve/solve_record.h"
 #include "solver/height/height.h"
 #include "solver/transport/horizon.h"
 

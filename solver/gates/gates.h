@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "core/albedo_scale.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/rig/albedo_scale.h"
 
 // Whether what the reference level can do to a cloth can gain anything, measured on tiles of it before it is
 // done.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/height/cosine_transform.h"
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::solver {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/fourier.h"
+#include "core/image/fourier.h"
 
 namespace weft::solver {
 

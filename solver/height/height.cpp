@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/height/bands.h"
 #include "solver/height/islands.h"
 #include "solver/height/multigrid.h"

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 
 namespace weft::solver {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "solver/height/slopes.h"
 
 namespace weft::solver {

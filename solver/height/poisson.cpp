@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/height/bands.h"
 #include "solver/height/cosine_transform.h"
 

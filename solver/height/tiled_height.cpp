@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/parallel.h"
-#include "core/vec.h"
+#include "core/base/parallel.h"
+#include "core/base/vec.h"
 #include "solver/height/cell_spline.h"
 #include "solver/height/slopes.h"
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "solver/height/height.h"
 
 namespace weft::solver {

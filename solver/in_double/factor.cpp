@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/light_field.h"
+#include "core/rig/light_field.h"
 
 namespace weft::solver {
 namespace {

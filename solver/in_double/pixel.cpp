@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/light_field.h"
+#include "core/rig/light_field.h"
 #include "solver/in_double/factor.h"
 #include "solver/in_double/triples.h"
 #include "solver/method.h"

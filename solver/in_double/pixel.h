@@ -8,9 +8,9 @@
 #include <span>
 #include <string_view>
 
-#include "core/radiometry.h"
-#include "core/solve_record.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/radiometry.h"
+#include "core/solve/solve_record.h"
 #include "solver/method.h"
 
 namespace weft::solver {

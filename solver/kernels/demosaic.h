@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "core/image.h"
-#include "core/raw_frame.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
 
 namespace weft::solver {
 

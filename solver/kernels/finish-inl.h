@@ -10,7 +10,7 @@
 
 #include <hwy/highway.h>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/kernels/gather-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -12,8 +12,8 @@
 // math-inl.h comes after highway.h.
 #include <hwy/contrib/math/math-inl.h>
 
-#include "core/light_field.h"
-#include "core/solve_record.h"
+#include "core/rig/light_field.h"
+#include "core/solve/solve_record.h"
 #include "solver/in_double/pixel.h"
 #include "solver/kernels/row_task.h"
 #include "solver/kernels/vector-inl.h"

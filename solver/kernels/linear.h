@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "core/image.h"
-#include "core/light_field.h"
+#include "core/image/image.h"
+#include "core/rig/light_field.h"
 #include "solver/method.h"
 
 namespace weft::solver {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/kernels/model_angles.h"
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "solver/kernels/model_angles.cpp"

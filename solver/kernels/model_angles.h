@@ -8,7 +8,7 @@
 #include "solver/uncertainty/model_sigma.h"
 
 // The model's part of sigma by rows, a pixel or a cell of 2 x 2 pixels a lane. Whole row groups
-// (core/image.h) may be read and written past the last one.
+// (core/image/image.h) may be read and written past the last one.
 
 namespace weft::solver {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/light_field.h"
+#include "core/rig/light_field.h"
 #include "solver/in_double/pixel.h"
 
 // What the row kernels are given: plain pointers, so that one definition serves every target.

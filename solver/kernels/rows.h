@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/light_field.h"
+#include "core/rig/light_field.h"
 #include "solver/in_double/pixel.h"
 #include "solver/kernels/row_task.h"
 #include "solver/method.h"

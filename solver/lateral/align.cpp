@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::solver {
 namespace {

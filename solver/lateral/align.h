@@ -4,10 +4,10 @@
 #include <array>
 #include <cstdint>
 
-#include "core/camera.h"
-#include "core/image.h"
-#include "core/lateral_color.h"
-#include "core/raw_frame.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/camera.h"
+#include "core/rig/lateral_color.h"
 
 namespace weft::solver {
 

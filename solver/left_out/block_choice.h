@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "solver/left_out/blocks.h"
 #include "solver/method.h"
 

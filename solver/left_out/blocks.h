@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 // Where a solve is judged: blocks of the frame, and small patches in them.
 

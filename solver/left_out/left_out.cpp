@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 #include "solver/in_double/pixel.h"
 
 namespace weft::solver {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "solver/left_out/block_choice.h"
 #include "solver/left_out/blocks.h"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace weft::solver {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 #include "solver/light_plan/light_plan.h"
 
 namespace weft::solver {

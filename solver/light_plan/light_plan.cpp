@@ -12,7 +12,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 #include "solver/in_double/pixel.h"
 #include "solver/reflectance/lobe_fit.h"
 #include "solver/reflectance/measured_lobe.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/lights.h"
+#include "core/rig/lights.h"
 #include "solver/light_plan/planned_rig.h"
 #include "solver/reflectance/lobe.h"
 

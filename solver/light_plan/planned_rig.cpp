@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 
 namespace weft::solver {
 namespace {
@@ -27,7 +27,7 @@ std::array<double, 3> parts(Vec3 v) {
   return {v.x, v.y, v.z};
 }
 
-// Of the names of a LED that the covariance has (core/lights.h).
+// Of the names of a LED that the covariance has (core/rig/lights.h).
 std::vector<Effect> effects_on(const NearLight& led, std::size_t number, Vec3 middle,
                                const std::vector<std::string>& names) {
   std::vector<Effect> effects;

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/lights.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/rig/lights.h"
 
 namespace weft::solver {
 

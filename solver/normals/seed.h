@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/in_double/pixel.h"
 
 namespace weft::solver {

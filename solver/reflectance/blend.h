@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "core/status_blend.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/solve/status_blend.h"
 #include "solver/reflectance/lobe.h"
 #include "solver/reflectance/pixel_fit.h"
 

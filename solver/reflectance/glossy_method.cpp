@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/status_blend.h"
+#include "core/solve/status_blend.h"
 #include "solver/in_double/pixelwise.h"
 #include "solver/reflectance/blend.h"
 #include "solver/reflectance/lobe_block.h"

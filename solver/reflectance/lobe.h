@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 // How a cloth reflects a small light, as photographs show it. The simulator has models of its own
 // (simulator/reflectance), so that neither is tested against itself.

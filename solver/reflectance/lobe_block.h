@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "solver/reflectance/lobe.h"
 #include "solver/reflectance/pixel_fit.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 
 namespace weft::solver {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/albedo_scale.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/albedo_scale.h"
 #include "solver/reflectance/lobe.h"
 #include "solver/reflectance/lobe_block.h"
 #include "solver/reflectance/pixel_fit.h"

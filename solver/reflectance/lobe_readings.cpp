@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 #include "solver/in_double/pixel.h"
 
 namespace weft::solver {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/method.h"
 #include "solver/reflectance/pixel_fit.h"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/kernels/row_task.h"
 #include "solver/method.h"
 #include "solver/reflectance/lobe_block.h"

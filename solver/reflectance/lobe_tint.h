@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/method.h"
 #include "solver/reflectance/lobe_fit.h"
 #include "solver/reflectance/measured_lobe.h"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 #include "solver/reflectance/blend.h"
 
 namespace weft::solver {

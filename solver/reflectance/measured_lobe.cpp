@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/parallel.h"
-#include "core/statistics.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
 
 namespace weft::solver {
 namespace {

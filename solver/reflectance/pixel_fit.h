@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/reflectance/lobe.h"
 
 namespace weft::solver {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/reflectance/lobe_by_lights.h"
 #include "solver/reflectance/pixel_fit.h"
 

@@ -9,9 +9,9 @@
 #include <cstdlib>
 #include <utility>
 
-#include "core/fourier.h"
-#include "core/parallel.h"
-#include "core/statistics.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
+#include "core/image/fourier.h"
 
 namespace weft::solver {
 namespace {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 
 // Shifts of the cloth between shots that are too large to be registered (registration.h) are searched for.
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/parallel.h"
-#include "core/statistics.h"
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "solver/registration/tile_system.h"
 
 namespace weft::solver {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "solver/method.h"
 #include "solver/registration/cloth_shift.h"
 

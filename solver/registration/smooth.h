@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "core/image.h"
-#include "core/raw_frame.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
 #include "solver/registration/registration.h"
 
 namespace weft::solver {

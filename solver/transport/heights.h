@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "solver/transport/relief.h"
 
 namespace weft::solver {

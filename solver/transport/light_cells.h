@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "solver/transport/lights.h"
 
 namespace weft::solver {

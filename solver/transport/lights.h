@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/transport/relief.h"
 
 // The lights over a relief, how far their shadows reach, and a bit for each.

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "solver/transport/lights.h"
 #include "solver/transport/relief.h"
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
-#include "core/image.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "solver/transport/lights.h"
 #include "solver/transport/relief.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 
 // The solved height of a cloth as light meets it. All of solver/transport works in pixels of the picture:
 // x = column, y = -row and z = height over mm_per_pixel, axes as in the rig frame. The camera looks down from

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/transport/heights.h"
 #include "solver/transport/planes.h"
 

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "solver/transport/relief.h"
 
 // Light that reaches a pixel from the cloth around it.
@@ -26,7 +26,7 @@ struct SliceSettings {
 /// What the pixels of `area` send back, a plane a light for a mosaic, a plane a light and channel for
 /// photographs in colour: x = reading / e, the reading over that of a white surface that faces the light
 /// (radiosity over irradiance, all shadows and bounces included). 0 where there is no picture. All must be
-/// finite: the caller replaces readings that cannot be used. Rows are padded (core/image.h).
+/// finite: the caller replaces readings that cannot be used. Rows are padded (core/image/image.h).
 struct RadiosityPlanes {
   Rect area;  ///< in pixels of the picture, and may go beyond it
   std::span<const View<const float>> planes;

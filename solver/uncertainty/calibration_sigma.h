@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/light_field.h"
-#include "core/lights.h"
-#include "core/radiometry.h"
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/rig/light_field.h"
+#include "core/rig/lights.h"
+#include "core/rig/radiometry.h"
 
 namespace weft::solver {
 

@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "core/light_field.h"
-#include "core/radiometry.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/light_field.h"
+#include "core/rig/radiometry.h"
 
 // What noise does not say of a solved normal's error: light from the cloth itself, which fits Lambert's law
 // and shows in no residual, and what does not fit it, such as highlights and cast shadows.

@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "bench/server/served_rig.h"
-#include "core/files.h"
-#include "core/json_document.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
 #include "tests/core/places.h"
 
 namespace weft::bench {

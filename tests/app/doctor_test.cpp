@@ -7,7 +7,7 @@
 
 #include <fstream>
 
-#include "core/calibration.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/server/served_rig.h"
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 #include "tests/core/places.h"
 
 namespace weft::bench {

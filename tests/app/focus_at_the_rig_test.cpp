@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bench/server/served_rig.h"
-#include "core/json_document.h"
-#include "core/temporary_folder.h"
+#include "core/base/json_document.h"
+#include "core/base/temporary_folder.h"
 #include "tests/core/places.h"
 
 namespace weft::bench {

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "bench/server/served_rig.h"
-#include "core/json_document.h"
-#include "core/session.h"
+#include "core/base/json_document.h"
+#include "core/rig/session.h"
 #include "tests/core/places.h"
 
 namespace weft::bench {

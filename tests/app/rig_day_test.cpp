@@ -12,10 +12,10 @@
 #include <string>
 
 #include "app/jobs/compare.h"
-#include "core/calibration.h"
-#include "core/files.h"
-#include "core/session.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/temporary_folder.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 #include "simulator/scene/resolution.h"
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/calibration.h"
+#include "core/rig/calibration.h"
 #include "simulator/reflectance/presets.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

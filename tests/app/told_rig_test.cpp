@@ -7,7 +7,7 @@
 #include <string>
 
 #include "bench/server/served_rig.h"
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 #include "tests/core/places.h"
 
 namespace weft::bench {

@@ -8,7 +8,7 @@
 
 #include "batch/outcome.h"
 #include "batch/plan.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/core/places.h"
 
 namespace weft::batch {

@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "core/field_json.h"
+#include "core/describe/field_json.h"
 
 #include "tests/batch/sample_plan.h"
 

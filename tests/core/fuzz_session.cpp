@@ -10,7 +10,7 @@
 #include <fstream>
 #include <string>
 
-#include "core/session.h"
+#include "core/rig/session.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::filesystem::path folder = "/dev/shm/weft_fuzz_session_" + std::to_string(getpid());

@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/calibration.h"
-#include "core/session.h"
-#include "core/solve.h"
-#include "core/solve_record.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
+#include "core/solve/solve.h"
+#include "core/solve/solve_record.h"
 #include "tests/core/places.h"
 
 namespace weft {

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/files.h"
-#include "core/product.h"
-#include "core/session.h"
-#include "core/solve.h"
+#include "core/base/files.h"
+#include "core/base/product.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
+#include "core/solve/solve.h"
 #include "tests/core/image_io/scratch_folder.h"
 #include "tests/core/places.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 #include "exchange/image_kind.h"
 #include "tests/exchange/export_checks.h"
 

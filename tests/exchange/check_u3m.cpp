@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/iso_time.h"
-#include "core/json_document.h"
+#include "core/base/iso_time.h"
+#include "core/base/json_document.h"
 #include "exchange/u3m/u3m.h"
 #include "exchange/u3m/vocabulary.h"
 #include "tests/exchange/export_checks.h"

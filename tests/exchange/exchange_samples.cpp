@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "exchange/gltf/glb.h"
 #include "exchange/materialx/materialx.h"
 #include "exchange/u3m/u3m.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "exchange/archive/zip.h"
 
 // Whether what the writers of exchange/ wrote keeps the rules of its format. Each refusal is kBadData.

@@ -9,9 +9,9 @@
 #include <cstring>
 #include <regex>
 
+#include "core/base/json_document.h"
+#include "core/base/temporary_folder.h"
 #include "core/image_io/image_io.h"
-#include "core/json_document.h"
-#include "core/temporary_folder.h"
 #include "exchange/gltf/glb.h"
 #include "exchange/materialx/materialx.h"
 #include "exchange/u3m/u3m.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/color_spaces.h"
+#include "core/image/color_spaces.h"
 #include "tests/exchange/png_bytes.h"
 
 namespace weft::exchange {

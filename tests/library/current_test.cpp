@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "core/files.h"
-#include "core/solve.h"
+#include "core/base/files.h"
+#include "core/solve/solve.h"
 #include "library/metadata.h"
 #include "solver/method.h"
 #include "tests/library/shelf.h"

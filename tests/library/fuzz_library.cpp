@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "core/temporary_folder.h"
+#include "core/base/temporary_folder.h"
 #include "library/catalogue.h"
 #include "library/metadata.h"
 

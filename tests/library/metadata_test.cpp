@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "library/left_out.h"
 #include "library/session_lock.h"
 #include "tests/library/shelf.h"

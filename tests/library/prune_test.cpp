@@ -6,7 +6,7 @@
 #include <chrono>
 #include <fstream>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "library/metadata.h"
 #include "tests/library/shelf.h"
 

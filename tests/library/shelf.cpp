@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::library {
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "core/json_document.h"
-#include "core/temporary_folder.h"
+#include "core/base/json_document.h"
+#include "core/base/temporary_folder.h"
 
 namespace weft::library {
 

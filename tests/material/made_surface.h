@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "material/surface.h"
 #include "simulator/geometry/surface.h"
 

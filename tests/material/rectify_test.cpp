@@ -12,7 +12,7 @@
 
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "material/surface.h"
 #include "material/vec2.h"
 

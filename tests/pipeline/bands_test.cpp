@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "tests/pipeline/cloth.h"
 
 namespace weft::pipeline {

@@ -4,9 +4,9 @@
 #include <array>
 #include <functional>
 
-#include "core/image.h"
-#include "core/lights.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
+#include "core/rig/lights.h"
 #include "pipeline/bands.h"
 #include "pipeline/photographs.h"
 #include "solver/reflectance/lobe.h"

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/camera.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/rig/camera.h"
 #include "pipeline/cut.h"
 #include "tests/pipeline/cloth.h"
 

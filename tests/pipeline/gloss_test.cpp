@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "core/solve_record.h"
-#include "core/status_blend.h"
+#include "core/solve/solve_record.h"
+#include "core/solve/status_blend.h"
 #include "pipeline/frame.h"
 #include "tests/pipeline/cloth.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "pipeline/frame.h"
 #include "tests/pipeline/cloth.h"
 #include "tests/pipeline/wavy_maps.h"

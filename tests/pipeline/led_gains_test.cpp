@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "tests/pipeline/cloth.h"
 
 namespace weft::pipeline {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 #include "pipeline/sigma_channels.h"
 #include "tests/pipeline/cloth.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "pipeline/bands.h"
 
 namespace weft::pipeline {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "tests/report/not_finite.h"
 
 namespace weft::report {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "core/solve_record.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/solve/solve_record.h"
 #include "tests/report/not_finite.h"
 
 namespace weft::report {

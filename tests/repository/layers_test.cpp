@@ -190,10 +190,10 @@ TEST(Layers, HoldInEveryFileOfTheTree) {
 
 TEST(Layers, ForbidEveryStepUpwardsOrSideways) {
   for (const auto& [path, header] :
-       std::vector<Case>{{"core/image.cpp", "core/image_io/image_io.h"},
-                         {"core/image.cpp", "solver/solve.h"},
+       std::vector<Case>{{"core/image/image.cpp", "core/image_io/image_io.h"},
+                         {"core/image/image.cpp", "solver/solve.h"},
                          {"core/image_io/exr.cpp", "capture/raw/decode.h"},
-                         {"core/image.cpp", "core/toml/toml_json.h"},
+                         {"core/image/image.cpp", "core/toml/toml_json.h"},
                          {"capture/scan.cpp", "calibration/lights.h"},
                          {"capture/scan.cpp", "firmware/board/main.h"},
                          {"calibration/lights.cpp", "capture/raw/decode.h"},
@@ -214,12 +214,12 @@ TEST(Layers, ForbidEveryStepUpwardsOrSideways) {
                          {"bench/report.cpp", "tests/core/image_io/scratch_folder.h"},
                          {"bench/report.cpp", "app/cli/terminal.h"},
                          {"simulator/scene.cpp", "virtual_rig/virtual_rig.h"},
-                         {"simulator/camera.cpp", "core/light_field.h"},
-                         {"simulator/camera.cpp", "core/radiometry.h"},
-                         {"simulator/camera.cpp", "core/radiometry_tiles.h"},
+                         {"simulator/camera.cpp", "core/rig/light_field.h"},
+                         {"simulator/camera.cpp", "core/rig/radiometry.h"},
+                         {"simulator/camera.cpp", "core/rig/radiometry_tiles.h"},
                          {"simulator/camera.cpp", "solver/solve.h"},
                          {"simulator/camera.cpp", "firmware/board/main.h"},
-                         {"firmware/board/main.c", "core/result.h"}}) {
+                         {"firmware/board/main.c", "core/base/result.h"}}) {
     EXPECT_EQ(forbidden_includes(path, including(header)).size(), 1U) << path << " includes " << header;
     const std::string angled = "#include <" + std::string(header) + ">\n";
     EXPECT_EQ(forbidden_includes(path, angled).size(), 1U) << path << " includes " << angled;
@@ -275,10 +275,10 @@ TEST(Layers, AllowWhatTheTableAllows) {
   for (const auto& [path, header] :
        std::vector<Case>{{"core/image_io/exr.cpp", "core/image_io/image_io.h"},
                          {"capture/scan.cpp", "firmware/protocol/protocol.h"},
-                         {"calibration/lights.cpp", "core/radiometry.h"},
+                         {"calibration/lights.cpp", "core/rig/radiometry.h"},
                          {"solver/normals/seed.cpp", "solver/solve.h"},
                          {"material/mips.cpp", "core/image_io/image_io.h"},
-                         {"simulator/camera.cpp", "core/lights.h"},
+                         {"simulator/camera.cpp", "core/rig/lights.h"},
                          {"virtual_rig/board.cpp", "firmware/protocol/protocol.h"},
                          {"app/cli/main.cpp", "simulator/scene/scene.h"},
                          {"bench/solve.cpp", "solver/solve.h"},
@@ -365,7 +365,7 @@ TEST(Layers, SeeACircleOfThreeFolders) {
   const std::vector<TextFile> sources = {
       {"solver/a/a.cpp", including("solver/b/b.h")},
       {"solver/b/b.cpp", including("solver/c/c.h")},
-      {"solver/c/c.cpp", including("solver/a/a.h") + including("core/image.h")}};
+      {"solver/c/c.cpp", including("solver/a/a.h") + including("core/image/image.h")}};
   EXPECT_EQ(circle_of(arrows_of(sources)).size(), 4U) << "there and back again";
 }
 
@@ -403,7 +403,7 @@ TEST(Layers, AreTheTableOfTheArchitecturePage) {
 TEST(Layers, WantPathsFromTheRootAndFoldersOfTheTable) {
   EXPECT_EQ(forbidden_includes("solver/solve.cpp", including("solve.h")).size(), 1U);
   EXPECT_EQ(forbidden_includes("solver/solve.cpp", including("core/../capture/scan.h")).size(), 1U);
-  EXPECT_EQ(forbidden_includes("helpers/solve.cpp", including("core/image.h")).size(), 1U);
+  EXPECT_EQ(forbidden_includes("helpers/solve.cpp", including("core/image/image.h")).size(), 1U);
 }
 
 TEST(Layers, NameFileAndLineAndReadOnlyIncludes) {

@@ -169,23 +169,23 @@ TEST(Seeds, TablesAreReadWithoutTheirHeaders) {
 }
 
 TEST(Seeds, ARowThatNamesNothingThereIsFound) {
-  const std::set<std::string> files = {"core/image.h", "solver/a.cpp"};
+  const std::set<std::string> files = {"core/image/image.h", "solver/a.cpp"};
   const std::set<std::string> tests = {"Suite.Name"};
   const auto faults = [&](std::array<const char*, 3> last) {
     return faults_of({7, {"eq. 1", "what", last[0], last[1], last[2]}}, files, tests);
   };
-  EXPECT_THAT(faults({"`core/image.h`, `solver/`", "`Suite.Name`", ""}), testing::IsEmpty());
+  EXPECT_THAT(faults({"`core/image/image.h`, `solver/`", "`Suite.Name`", ""}), testing::IsEmpty());
   EXPECT_THAT(faults({"", "", "Later: colour"}), testing::IsEmpty());
   EXPECT_THAT(faults({"", "", "Out: no cloth"}), testing::IsEmpty());
   EXPECT_THAT(faults({"`core/imag.h`", "`Suite.Name`", ""}),
               testing::ElementsAre("docs/seeds.md:7: no file core/imag.h"));
   EXPECT_THAT(faults({"`material/`", "`Suite.Name`", ""}), testing::SizeIs(1));
   EXPECT_THAT(faults({"", "", "Out: see `core/none.h`"}), testing::SizeIs(1));
-  EXPECT_THAT(faults({"`core/image.h`", "`Suite.Other`", ""}),
+  EXPECT_THAT(faults({"`core/image/image.h`", "`Suite.Other`", ""}),
               testing::ElementsAre("docs/seeds.md:7: no test Suite.Other"));
   EXPECT_THAT(faults({"", "`Suite.Name`", "a remark that says neither"}),
               testing::ElementsAre("docs/seeds.md:7: neither carried nor explained"));
-  EXPECT_THAT(faults({"`core/image.h`", "", "a remark"}),
+  EXPECT_THAT(faults({"`core/image/image.h`", "", "a remark"}),
               testing::ElementsAre("docs/seeds.md:7: carried, and shown by no test"));
   EXPECT_THAT(faults_of({7, {"eq. 1", "what", "", "why"}}, files, tests), testing::SizeIs(1));
   EXPECT_THAT(faults_of({7, {"", "what", "", "", "Out: why"}}, files, tests), testing::SizeIs(1));

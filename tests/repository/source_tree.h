@@ -10,7 +10,7 @@ namespace weft::repository {
 
 /// A file of the repository.
 struct TextFile {
-  std::string path;  ///< from the root of the repository, "core/image.h"
+  std::string path;  ///< from the root of the repository, "core/image/image.h"
   std::string text;
 };
 
@@ -27,7 +27,7 @@ std::vector<std::string_view> lines_of(std::string_view text);
 /// Whether a path ends in one of these.
 bool ends_in(std::string_view path, std::initializer_list<std::string_view> endings);
 
-/// Where in a file, for messages: "core/image.h:12".
+/// Where in a file, for messages: "core/image/image.h:12".
 std::string place(std::string_view path, std::size_t line);
 
 }  // namespace weft::repository

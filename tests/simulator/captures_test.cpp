@@ -9,9 +9,9 @@
 #include <set>
 
 #include "capture/rig.h"
-#include "core/calibration.h"
-#include "core/files.h"
-#include "core/session.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 #include "simulator/captures_layout.h"
 #include "simulator/targets/target.h"
 #include "tests/simulator/output.h"

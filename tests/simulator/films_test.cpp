@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/session.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 #include "simulator/simulate.h"
 #include "tests/simulator/output.h"
 

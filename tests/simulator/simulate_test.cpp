@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
-#include "core/session.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 #include "simulator/camera/sensor.h"
 #include "tests/simulator/output.h"
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "bench/oracles/hard_lights.h"
-#include "core/light_field.h"
 #include "bench/oracles/quad_oracle.h"
 #include "bench/oracles/rig.h"
+#include "core/rig/light_field.h"
 #include "solver/in_double/pixel.h"
 #include "tests/solver/tiles.h"
 

@@ -9,7 +9,7 @@
 #include "bench/oracles/hard_lights.h"
 #include "bench/oracles/quad_oracle.h"
 #include "bench/oracles/rig.h"
-#include "core/tiles.h"
+#include "core/image/tiles.h"
 #include "solver/in_double/pixel.h"
 #include "tests/solver/tiles.h"
 

@@ -7,9 +7,9 @@
 #include <functional>
 #include <string>
 
-#include "core/calibration.h"
-#include "core/camera.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
+#include "core/rig/camera.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {

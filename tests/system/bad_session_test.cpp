@@ -9,7 +9,7 @@
 #include <string>
 
 #include "capture/raw/decode.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "simulator/camera/dng_writer.h"
 #include "tests/system/session_test.h"

@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "core/process.h"
+#include "core/base/process.h"
 #include "tests/core/places.h"
 #include "tests/system/batch_test.h"
 #include "tests/system/samples.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "core/solve.h"
-#include "core/temporary_folder.h"
+#include "core/base/temporary_folder.h"
+#include "core/solve/solve.h"
 #include "tests/system/batch_test.h"
 #include "tests/system/samples.h"
 

@@ -7,8 +7,8 @@
 #include <functional>
 #include <map>
 
-#include "core/calibration.h"
-#include "core/session.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 #include "tests/system/batch_test.h"
 
 namespace weft::test {

@@ -12,11 +12,11 @@
 #include <random>
 #include <thread>
 
+#include "core/base/partial_name.h"
+#include "core/base/process.h"
 #include "core/image_io/image_io.h"
-#include "core/partial_name.h"
-#include "core/process.h"
-#include "core/session.h"
-#include "core/solve.h"
+#include "core/rig/session.h"
+#include "core/solve/solve.h"
 #include "library/current.h"
 #include "library/session_files.h"
 #include "tests/core/places.h"

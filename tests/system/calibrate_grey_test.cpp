@@ -8,7 +8,7 @@
 #include <string>
 
 #include "app/jobs/calibrate/grey.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
 #include "tests/system/workspace.h"

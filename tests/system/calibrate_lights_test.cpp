@@ -16,10 +16,10 @@
 #include "app/jobs/calibrate/sheet_files.h"
 #include "bench/oracles/paper_oracle.h"
 #include "capture/rig.h"
-#include "core/calibration.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
-#include "core/session.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 #include "simulator/simulate.h"
 #include "tests/system/program.h"
 

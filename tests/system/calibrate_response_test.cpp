@@ -13,7 +13,7 @@
 #include "bench/oracles/virtual_sensor.h"
 #include "calibration/response/neutral_scale.h"
 #include "calibration/response/superposition.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "simulator/camera/dng_writer.h"
 #include "tests/system/workspace.h"

@@ -16,7 +16,7 @@
 #include "app/jobs/session_input.h"
 #include "app/jobs/solve.h"
 #include "calibration/camera/pose.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "simulator/captures.h"
 #include "simulator/captures_layout.h"
 #include "simulator/scene/rig.h"

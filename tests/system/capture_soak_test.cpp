@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 #include "tests/core/places.h"
 #include "virtual_rig/rig_process.h"
 

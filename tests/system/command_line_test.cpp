@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/files.h"
-#include "core/process.h"
+#include "core/base/files.h"
+#include "core/base/process.h"
 #include "tests/core/places.h"
 #include "tests/system/session_test.h"
 

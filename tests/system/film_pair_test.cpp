@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "app/jobs/session_input.h"
-#include "core/calibration.h"
-#include "core/session.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 

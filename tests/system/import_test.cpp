@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "capture/raw/decode.h"
-#include "core/calibration.h"
-#include "core/files.h"
-#include "core/session.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 #include "simulator/camera/dng_writer.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "core/files.h"
-#include "core/session.h"
+#include "core/base/files.h"
+#include "core/rig/session.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {

@@ -11,10 +11,10 @@
 #include <string>
 #include <utility>
 
-#include "core/calibration.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
-#include "core/session.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {

@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/json_document.h"
 #include "core/image_io/image_io.h"
-#include "core/json_document.h"
 #include "tests/core/places.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 namespace weft::test {
 

@@ -13,8 +13,8 @@
 
 #include "app/jobs/facts_json.h"
 #include "app/jobs/session_input.h"
+#include "core/base/vec.h"
 #include "core/image_io/image_io.h"
-#include "core/vec.h"
 #include "pipeline/frame.h"
 #include "pipeline/reference.h"
 #include "tests/system/samples.h"

@@ -11,8 +11,8 @@
 #include <functional>
 #include <stdexcept>
 
-#include "core/files.h"
-#include "core/session.h"
+#include "core/base/files.h"
+#include "core/rig/session.h"
 #include "simulator/simulate.h"
 #include "tests/core/places.h"
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "core/image_io/image_io.h"
-#include "core/lights.h"
-#include "core/vec.h"
+#include "core/rig/lights.h"
 #include "simulator/scene/scene.h"
 
 namespace weft::test {

@@ -23,7 +23,7 @@
 #include "capture/raw/decode.h"
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/virtual_rig/small_scene.h"
 #include "virtual_rig/terminal/modem_lines.h"
 #include "virtual_rig/virtual_rig.h"

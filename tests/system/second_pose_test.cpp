@@ -7,8 +7,8 @@
 #include <string>
 
 #include "app/jobs/solve.h"
-#include "core/json_document.h"
-#include "core/session.h"
+#include "core/base/json_document.h"
+#include "core/rig/session.h"
 #include "tests/system/program.h"
 #include "tests/system/session_test.h"
 

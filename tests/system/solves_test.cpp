@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "app/jobs/report.h"
-#include "core/files.h"
-#include "core/session.h"
+#include "core/base/files.h"
+#include "core/rig/session.h"
 #include "solver/method.h"
 #include "tests/system/program.h"
 #include "tests/system/samples.h"

@@ -10,9 +10,9 @@
 
 #include "app/jobs/maps/maps.h"
 #include "app/jobs/solve.h"
+#include "core/base/json_document.h"
 #include "core/image_io/image_io.h"
-#include "core/json_document.h"
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {

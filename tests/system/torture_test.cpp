@@ -7,9 +7,9 @@
 #include <string>
 
 #include "app/jobs/solve.h"
-#include "core/light_field.h"
 #include "core/image_io/image_io.h"
-#include "core/solve_record.h"
+#include "core/rig/light_field.h"
+#include "core/solve/solve_record.h"
 #include "solver/method.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

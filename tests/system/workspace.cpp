@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::test {
 

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/virtual_rig/small_scene.h"
 
 namespace weft::virtual_rig {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string>
 
-#include "core/calibration.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
 #include "tests/virtual_rig/small_scene.h"
 
 namespace weft::virtual_rig {

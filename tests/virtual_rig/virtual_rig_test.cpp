@@ -15,7 +15,7 @@
 
 #include "capture/board/led_board.h"
 #include "capture/raw/decode.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/virtual_rig/ptp/client_process.h"
 #include "tests/virtual_rig/ptp/gphoto_client.h"
 #include "tests/virtual_rig/small_scene.h"

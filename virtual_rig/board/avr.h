@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "virtual_rig/board/lit_log.h"
 
 struct avr_t;

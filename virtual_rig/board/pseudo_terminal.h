@@ -9,7 +9,7 @@
 #include <memory>
 #include <span>
 
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::virtual_rig {
 

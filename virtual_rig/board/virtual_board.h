@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "virtual_rig/board/lit_log.h"
 
 namespace weft::virtual_rig {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "core/tiles.h"
+#include "core/image/tiles.h"
 #include "simulator/camera/defects.h"
 #include "simulator/camera/dng_writer.h"
 #include "simulator/camera/saturation.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "virtual_rig/board/lit_log.h"
 #include "virtual_rig/light/light_faults.h"
 #include "virtual_rig/light/light_frames.h"

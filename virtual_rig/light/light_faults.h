@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 #include "virtual_rig/commands/command_words.h"
 
 namespace weft::virtual_rig {

@@ -19,9 +19,9 @@
 #include <system_error>
 #include <thread>
 
-#include "core/descriptor.h"
-#include "core/files.h"
-#include "core/raw_frame.h"
+#include "core/base/descriptor.h"
+#include "core/base/files.h"
+#include "core/image/raw_frame.h"
 #include "simulator/build_passes.h"
 #include "simulator/camera/defects.h"
 #include "simulator/effects/random_key.h"

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
-#include "core/tiles.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/tiles.h"
 #include "simulator/plan.h"
 
 namespace weft::virtual_rig {

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/statistics.h"
 #include "core/image_io/encode_image.h"
-#include "core/statistics.h"
 #include "simulator/effects/random_key.h"
 #include "simulator/sampling/random.h"
 

@@ -10,8 +10,8 @@
 #include <cstdio>
 
 #include "app/cli/exit_code.h"
-#include "core/descriptor.h"
-#include "core/process.h"
+#include "core/base/descriptor.h"
+#include "core/base/process.h"
 
 namespace weft::app {
 namespace {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "app/cli/exit_code.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "simulator/scene/resolution.h"
 #include "virtual_rig/control_socket.h"
 #include "virtual_rig/program/background.h"

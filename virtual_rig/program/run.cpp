@@ -14,7 +14,7 @@
 #include <optional>
 
 #include "app/cli/exit_code.h"
-#include "core/process.h"
+#include "core/base/process.h"
 #include "virtual_rig/program/background.h"
 #include "virtual_rig/rig_process.h"
 

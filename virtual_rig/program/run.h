@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "virtual_rig/virtual_rig.h"
 
 namespace weft::app {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "virtual_rig/ptp/bytes.h"
 
 /// The datasets of PTP (ISO 15740, clause 5) that a camera hands out.

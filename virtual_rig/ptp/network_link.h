@@ -6,7 +6,7 @@
 #include <memory>
 #include <mutex>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "virtual_rig/ptp/body.h"
 #include "virtual_rig/ptp/link.h"
 #include "virtual_rig/ptp/socket.h"

@@ -9,7 +9,7 @@
 #include <span>
 #include <thread>
 
-#include "core/descriptor.h"
+#include "core/base/descriptor.h"
 #include "virtual_rig/ptp/bytes.h"
 
 namespace weft::virtual_rig::ptp {

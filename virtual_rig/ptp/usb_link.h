@@ -11,7 +11,7 @@
 #include <mutex>
 #include <optional>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "virtual_rig/ptp/body.h"
 #include "virtual_rig/ptp/link.h"
 #include "virtual_rig/ptp/socket.h"

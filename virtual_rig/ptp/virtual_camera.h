@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "virtual_rig/board/lit_log.h"
 
 namespace weft::virtual_rig {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "core/vec.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
 #include "simulator/scene/scene.h"
 #include "virtual_rig/commands/command_words.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "simulator/bare_rig.h"
 #include "simulator/scene/scene.h"
 #include "virtual_rig/commands/command_words.h"

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::virtual_rig {
 

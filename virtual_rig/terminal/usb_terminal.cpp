@@ -7,7 +7,7 @@
 
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::virtual_rig {
 namespace {

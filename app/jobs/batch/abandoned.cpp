@@ -5,7 +5,7 @@
 #include <chrono>
 #include <optional>
 
-#include "core/partial_name.h"
+#include "core/base/partial_name.h"
 
 namespace weft::app {
 namespace {

@@ -6,9 +6,9 @@
 
 namespace weft::app {
 
-/// Folders that processes left half made in `parent` (core/files.h: PartialFolder) and that nobody works on:
-/// their process of this machine is gone, or they are of another machine and nothing in them has changed for
-/// a day.
+/// Folders that processes left half made in `parent` (core/base/files.h: PartialFolder) and that nobody works
+/// on: their process of this machine is gone, or they are of another machine and nothing in them has changed
+/// for a day.
 std::vector<std::filesystem::path> abandoned_in(const std::filesystem::path& parent);
 
 /// The same of a session: where its solves, maps and exports are made, and `solves`.

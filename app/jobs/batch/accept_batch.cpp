@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "app/jobs/batch/merge_batch.h"
-#include "core/session.h"
+#include "core/rig/session.h"
 #include "library/current.h"
 #include "library/metadata.h"
 #include "library/prune.h"

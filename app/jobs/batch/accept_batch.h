@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "app/jobs/report.h"
-#include "core/solve.h"
+#include "core/solve/solve.h"
 
 namespace weft::app {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "app/jobs/batch/change_pictures.h"
 #include "app/jobs/batch/merge_batch.h"
-#include "core/verdict.h"
+#include "core/solve/verdict.h"
 #include "report/page.h"
 
 namespace weft::app {

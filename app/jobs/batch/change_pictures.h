@@ -6,7 +6,7 @@
 
 #include "batch/change.h"
 #include "batch/plan.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

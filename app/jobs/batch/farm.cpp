@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "app/jobs/batch/merge_batch.h"
-#include "core/files.h"
-#include "core/process.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/process.h"
+#include "core/base/temporary_folder.h"
 
 namespace weft::app {
 namespace {

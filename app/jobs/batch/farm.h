@@ -8,7 +8,7 @@
 
 #include "app/jobs/batch/plan_file.h"
 #include "batch/farm.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 // A batch on a cluster that Slurm shares out. What is done is told by the folders of solves, never by Slurm.
 

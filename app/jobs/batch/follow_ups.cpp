@@ -11,9 +11,9 @@
 #include "app/jobs/maps/maps.h"
 #include "app/jobs/solve.h"
 #include "batch/outcome.h"
-#include "core/files.h"
-#include "core/session.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/temporary_folder.h"
+#include "core/rig/session.h"
 #include "library/session_files.h"
 
 namespace weft::app {

@@ -8,8 +8,8 @@
 
 #include "app/jobs/batch/survey.h"
 #include "batch/plan.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 
 // What a plan has made of each solve: maps and exports.
 

@@ -19,7 +19,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "core/descriptor.h"
-#include "core/result.h"
+#include "core/base/descriptor.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 
@@ -24,7 +24,7 @@ struct ForkedEnd {
   std::uint64_t peak_bytes = 0;  ///< of memory that it held at once
 };
 
-/// Work in a process of its own, forked from this one and no program of its own (core/process), since a
+/// Work in a process of its own, forked from this one and no program of its own (core/base/process), since a
 /// function is handed on with all that it holds: whatever becomes of it, memory that runs out or a bug, costs
 /// this one nothing. It is killed with this object, and with this process. The caller has not started threads
 /// that hold locks, and has run nothing on those of parallel_for(): they do not exist in the fork.

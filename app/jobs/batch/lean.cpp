@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
+#include "core/base/product.h"
 #include "core/image_io/image_io.h"
-#include "core/json_document.h"
-#include "core/product.h"
-#include "core/solve.h"
+#include "core/solve/solve.h"
 
 namespace weft::app {
 namespace {

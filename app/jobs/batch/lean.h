@@ -5,8 +5,8 @@
 #include <string>
 
 #include "batch/plan.h"
-#include "core/compression.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/compression.h"
 
 // Solves of which only some maps are kept.
 

@@ -9,10 +9,10 @@
 #include "app/jobs/batch/abandoned.h"
 #include "app/jobs/batch/batch_page.h"
 #include "app/jobs/batch/change_pictures.h"
-#include "core/field_json.h"
-#include "core/files.h"
-#include "core/solve.h"
-#include "core/solve_record.h"
+#include "core/base/files.h"
+#include "core/describe/field_json.h"
+#include "core/solve/solve.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::app {
 namespace {

@@ -8,8 +8,8 @@
 #include "app/jobs/batch/plan_file.h"
 #include "batch/plan.h"
 #include "batch/summary.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -7,9 +7,9 @@
 #include <system_error>
 
 #include "batch/farm.h"
-#include "core/files.h"
-#include "core/process.h"
-#include "core/solve.h"
+#include "core/base/files.h"
+#include "core/base/process.h"
+#include "core/solve/solve.h"
 
 namespace weft::app {
 namespace {

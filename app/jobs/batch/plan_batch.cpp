@@ -18,11 +18,11 @@
 #include "batch/choice.h"
 #include "batch/forecast.h"
 #include "batch/outcome.h"
-#include "core/error_kind.h"
-#include "core/files.h"
-#include "core/parallel.h"
-#include "core/solve.h"
-#include "core/solve_record.h"
+#include "core/base/error_kind.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
+#include "core/solve/solve.h"
+#include "core/solve/solve_record.h"
 #include "solver/method.h"
 
 namespace weft::app {

@@ -10,8 +10,8 @@
 #include <cerrno>
 #include <utility>
 
-#include "core/descriptor.h"
-#include "core/files.h"
+#include "core/base/descriptor.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "batch/outcome.h"
 #include "batch/plan.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 // A plan on disk, and beside it NAME.results/ with a file a task.
 

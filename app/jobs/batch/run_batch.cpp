@@ -20,11 +20,11 @@
 #include "app/jobs/batch/plan_batch.h"
 #include "app/jobs/batch/plan_file.h"
 #include "app/jobs/batch/session_work.h"
-#include "core/descriptor.h"
-#include "core/files.h"
-#include "core/parallel.h"
-#include "core/partial_name.h"
-#include "core/solve.h"
+#include "core/base/descriptor.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
+#include "core/base/partial_name.h"
+#include "core/solve/solve.h"
 
 namespace weft::app {
 namespace {

@@ -12,9 +12,9 @@
 #include "app/jobs/batch/lean.h"
 #include "app/jobs/batch/solve_change.h"
 #include "app/jobs/explain.h"
+#include "core/base/temporary_folder.h"
+#include "core/base/vec.h"
 #include "core/image_io/image_io.h"
-#include "core/temporary_folder.h"
-#include "core/vec.h"
 
 namespace weft::app {
 namespace {

@@ -8,8 +8,8 @@
 #include "app/jobs/explain.h"
 #include "batch/forecast.h"
 #include "batch/plan.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -10,10 +10,10 @@
 #include "app/jobs/batch/lean.h"
 #include "app/jobs/batch/solve_change.h"
 #include "app/jobs/solve.h"
-#include "core/calibration.h"
-#include "core/files.h"
-#include "core/session.h"
-#include "core/solve_record.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::app {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "batch/outcome.h"
 #include "batch/plan.h"
-#include "core/job.h"
+#include "core/base/job.h"
 
 namespace weft::app {
 

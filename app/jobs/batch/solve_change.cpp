@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "app/jobs/compare.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
+#include "core/base/vec.h"
 #include "core/image_io/solve_maps.h"
-#include "core/parallel.h"
-#include "core/solve.h"
-#include "core/solve_record.h"
-#include "core/status_blend.h"
-#include "core/vec.h"
+#include "core/solve/solve.h"
+#include "core/solve/solve_record.h"
+#include "core/solve/status_blend.h"
 
 namespace weft::app {
 namespace {

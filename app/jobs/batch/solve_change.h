@@ -6,10 +6,10 @@
 #include <string>
 
 #include "batch/change.h"
-#include "core/image.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "core/image_io/exr_window.h"
 #include "core/image_io/image_io.h"
-#include "core/result.h"
 
 // How the maps of one solve differ from those of another of the same photographs.
 

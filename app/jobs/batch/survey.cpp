@@ -13,11 +13,11 @@
 
 #include "app/jobs/batch/lean.h"
 #include "app/jobs/solve.h"
-#include "core/calibration.h"
-#include "core/files.h"
-#include "core/parallel.h"
-#include "core/product.h"
-#include "core/solve.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
+#include "core/base/product.h"
+#include "core/rig/calibration.h"
+#include "core/solve/solve.h"
 #include "library/current.h"
 #include "solver/method.h"
 

@@ -10,9 +10,9 @@
 #include "app/jobs/session_input.h"
 #include "batch/forecast.h"
 #include "batch/plan.h"
-#include "core/image.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 
 // What sessions are, seen without opening a photograph.
 

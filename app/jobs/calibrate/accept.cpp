@@ -14,7 +14,7 @@
 
 #include "app/jobs/last_check.h"
 #include "capture/rig.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "calibration/checks/movement.h"
-#include "core/calibration.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 

@@ -6,7 +6,7 @@
 
 #include "app/jobs/calibrate/board_photographs.h"
 #include "app/jobs/calibrate/sheet_files.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 

@@ -8,12 +8,12 @@
 #include <optional>
 #include <utility>
 
-#include "app/jobs/linear_image.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
-#include "core/files.h"
-#include "core/statistics.h"
-#include "core/suits.h"
+#include "core/base/files.h"
+#include "core/base/statistics.h"
+#include "core/image_io/linear_image.h"
+#include "core/rig/suits.h"
 
 namespace weft::app {
 namespace {

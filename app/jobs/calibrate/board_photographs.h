@@ -8,13 +8,13 @@
 
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
-#include "core/calibration.h"
-#include "core/fields.h"
-#include "core/image.h"
-#include "core/job.h"
-#include "core/number.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/number.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/calibration.h"
 
 // A folder of photographs of a board: which can be used, and what they show.
 

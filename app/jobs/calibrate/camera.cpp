@@ -12,13 +12,13 @@
 #include "app/jobs/calibrate/camera_report.h"
 #include "app/jobs/calibrate/described.h"
 #include "app/jobs/calibrate/patches.h"
-#include "app/jobs/linear_image.h"
 #include "calibration/camera/lateral.h"
 #include "calibration/camera/lens.h"
 #include "calibration/camera/spread.h"
 #include "capture/raw/decode.h"
-#include "core/field_check.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/describe/field_check.h"
+#include "core/image_io/linear_image.h"
 
 namespace weft::app {
 namespace {

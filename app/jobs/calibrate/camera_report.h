@@ -10,7 +10,7 @@
 #include "app/jobs/calibrate/report.h"
 #include "calibration/camera/lateral.h"
 #include "calibration/camera/lens.h"
-#include "core/calibration.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 

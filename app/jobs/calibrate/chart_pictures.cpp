@@ -7,11 +7,11 @@
 #include <array>
 #include <utility>
 
-#include "app/jobs/linear_image.h"
 #include "app/jobs/raw_picture.h"
 #include "app/jobs/session_input.h"
 #include "capture/raw/decode.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/image_io/linear_image.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 #include "pipeline/bands.h"

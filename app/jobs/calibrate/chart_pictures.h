@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "calibration/color/chart_reference.h"
-#include "core/calibration.h"
-#include "core/fields.h"
-#include "core/image.h"
-#include "core/job.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/calibration.h"
 
 // Pictures of a colour chart, linear in the camera's channels.
 

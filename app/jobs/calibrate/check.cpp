@@ -19,9 +19,9 @@
 #include "app/jobs/calibrate/sheet_evidence.h"
 #include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/session_input.h"
-#include "core/field_check.h"
-#include "core/files.h"
-#include "core/iso_time.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
+#include "core/describe/field_check.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 

@@ -7,9 +7,9 @@
 #include "app/jobs/calibrate/outcome.h"
 #include "calibration/checks/flatness.h"
 #include "calibration/checks/movement.h"
-#include "core/fields.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 // Whether a calibration holds. A result is a folder with result.json (weft.calibration-check/1: date, what
 // was checked, calibration, passed, numbers) and the report check.html and check.json; `weft calibrate

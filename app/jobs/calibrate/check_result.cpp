@@ -5,9 +5,9 @@
 
 #include <array>
 
-#include "core/field_json.h"
-#include "core/files.h"
-#include "core/iso_time.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

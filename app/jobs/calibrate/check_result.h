@@ -7,8 +7,8 @@
 
 #include "app/jobs/calibrate/report.h"
 #include "app/jobs/last_check.h"
-#include "core/calibration.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 

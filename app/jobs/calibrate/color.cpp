@@ -11,10 +11,10 @@
 #include "app/jobs/calibrate/color_report.h"
 #include "app/jobs/calibrate/described.h"
 #include "calibration/color/chart.h"
-#include "core/color_transform.h"
-#include "core/field_check.h"
-#include "core/files.h"
-#include "core/suits.h"
+#include "core/base/files.h"
+#include "core/describe/field_check.h"
+#include "core/rig/color_transform.h"
+#include "core/rig/suits.h"
 
 namespace weft::app {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "app/jobs/calibrate/outcome.h"
-#include "core/fields.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 

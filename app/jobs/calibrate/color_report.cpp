@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/calibrate/color_report.h"
-#include "core/color_transform.h"
+#include "core/rig/color_transform.h"
 
 #include <fmt/format.h>
 

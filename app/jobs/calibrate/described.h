@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "core/fields.h"
+#include "core/describe/fields.h"
 
 // Fields that steps of a calibration share.
 

@@ -14,7 +14,7 @@
 #include "app/jobs/session_input.h"
 #include "calibration/lights/grey_chart.h"
 #include "calibration/lights/physical.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "app/jobs/calibrate/outcome.h"
-#include "core/fields.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 

@@ -12,9 +12,9 @@
 #include "app/jobs/calibrate/accept.h"
 #include "app/jobs/calibrate/check_result.h"
 #include "app/jobs/calibrate/movement_words.h"
-#include "core/files.h"
-#include "core/iso_time.h"
-#include "core/session.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
+#include "core/rig/session.h"
 #include "report/plot_svg.h"
 
 namespace weft::app {

@@ -8,9 +8,9 @@
 
 #include "app/jobs/calibrate/report.h"
 #include "app/jobs/last_check.h"
-#include "core/calibration.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 

@@ -14,11 +14,11 @@
 #include "app/jobs/calibrate/patches.h"
 #include "app/jobs/calibrate/sheet_captures.h"
 #include "capture/rig.h"
-#include "core/field_check.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
+#include "core/describe/field_check.h"
 #include "core/image_io/image_io.h"
-#include "core/light_field.h"
-#include "core/parallel.h"
+#include "core/rig/light_field.h"
 #include "solver/uncertainty/calibration_sigma.h"
 
 namespace weft::app {

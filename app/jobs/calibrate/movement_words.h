@@ -5,7 +5,7 @@
 
 #include "app/jobs/report.h"
 #include "calibration/checks/movement.h"
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 // What happened to a rig, for people and for programs.
 

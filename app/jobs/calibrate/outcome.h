@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/jobs/calibrate/report.h"
-#include "core/calibration.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 

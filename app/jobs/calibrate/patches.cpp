@@ -12,7 +12,7 @@
 #include "app/jobs/calibrate/rig_evidence.h"
 #include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/session_input.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 #include "pipeline/conditions/drift.h"

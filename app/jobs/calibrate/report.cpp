@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/calibrate/report.h"
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 

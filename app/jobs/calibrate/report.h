@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/calibration.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
 #include "report/page.h"
 
 // The report of one step of a calibration: what was measured, how well, and what to do where it is not well

@@ -17,7 +17,7 @@
 #include "calibration/response/neutral_scale.h"
 #include "calibration/response/response_measurement.h"
 #include "capture/raw/decode.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "report/plot_svg.h"
 

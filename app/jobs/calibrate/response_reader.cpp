@@ -8,12 +8,12 @@
 #include <optional>
 #include <set>
 
-#include "app/jobs/linear_image.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
-#include "core/photosites.h"
-#include "core/radiometry.h"
-#include "core/suits.h"
+#include "core/image_io/linear_image.h"
+#include "core/rig/photosites.h"
+#include "core/rig/radiometry.h"
+#include "core/rig/suits.h"
 
 namespace weft::app {
 namespace {

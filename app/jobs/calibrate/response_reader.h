@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "calibration/response/response_frames.h"
-#include "core/calibration.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 

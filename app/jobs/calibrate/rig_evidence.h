@@ -8,8 +8,8 @@
 
 #include "calibration/camera/markers.h"
 #include "calibration/checks/movement.h"
-#include "core/calibration.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
 #include "pipeline/photographs.h"
 
 // What photographs show of the rig itself: tags and white patches on the table.

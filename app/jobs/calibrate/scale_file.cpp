@@ -6,7 +6,7 @@
 
 #include "app/jobs/calibrate/sheet_files.h"
 #include "calibration/response/neutral_scale.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 

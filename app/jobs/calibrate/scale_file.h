@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "calibration/color/chart.h"
-#include "core/fields.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 // What people write beside photographs of a grey scale: scale.toml.
 

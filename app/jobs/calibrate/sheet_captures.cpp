@@ -9,14 +9,14 @@
 #include <mutex>
 #include <set>
 
-#include "app/jobs/linear_image.h"
 #include "app/jobs/session_frames.h"
-#include "core/exposure_words.h"
-#include "core/files.h"
-#include "core/parallel.h"
-#include "core/radiometry.h"
-#include "core/session.h"
-#include "core/veil.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
+#include "core/image_io/linear_image.h"
+#include "core/rig/exposure_words.h"
+#include "core/rig/radiometry.h"
+#include "core/rig/session.h"
+#include "core/rig/veil.h"
 
 namespace weft::app {
 namespace {

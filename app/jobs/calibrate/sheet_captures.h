@@ -10,10 +10,10 @@
 #include "calibration/lights/light_map.h"
 #include "calibration/lights/paper_model.h"
 #include "calibration/lights/sheet_blocks.h"
-#include "core/calibration.h"
-#include "core/job.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 
 // Sessions of a sheet of white paper, as averages of blocks.
 

@@ -8,8 +8,8 @@
 
 #include "app/jobs/calibrate/rig_evidence.h"
 #include "calibration/lights/sheet_blocks.h"
-#include "core/files.h"
-#include "core/parallel.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
 
 namespace weft::app {
 namespace {

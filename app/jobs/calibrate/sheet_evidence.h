@@ -8,9 +8,9 @@
 #include "app/jobs/calibrate/sheet_files.h"
 #include "calibration/checks/flatness.h"
 #include "calibration/checks/movement.h"
-#include "core/calibration.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
 #include "pipeline/photographs.h"
 
 namespace weft::app {

@@ -8,8 +8,8 @@
 
 #include "calibration/camera/markers.h"
 #include "calibration/lights/sheet.h"
-#include "core/fields.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 // What people write about a sheet of white paper.
 

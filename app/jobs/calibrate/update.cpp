@@ -11,7 +11,7 @@
 #include "app/jobs/calibrate/described.h"
 #include "app/jobs/calibrate/movement_words.h"
 #include "app/jobs/calibrate/rig_evidence.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

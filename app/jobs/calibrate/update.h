@@ -6,9 +6,9 @@
 
 #include "app/jobs/calibrate/outcome.h"
 #include "calibration/checks/movement.h"
-#include "core/fields.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 // Ways from photographs to a calibration that the rig scans with, as weft calibrate and the page walk them.
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "app/jobs/export/textured.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "exchange/document.h"
 #include "exchange/gltf/glb.h"
 #include "exchange/materialx/materialx.h"

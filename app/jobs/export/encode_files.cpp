@@ -13,8 +13,8 @@
 
 #include "app/jobs/export/map_planes.h"
 #include "app/jobs/export/texture_file.h"
-#include "core/files.h"
-#include "core/parallel.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
 
 namespace weft::app {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "app/jobs/export/map_folder.h"
 #include "app/jobs/export/plan.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 #include "exchange/presets/loss.h"
 
 namespace weft::app {

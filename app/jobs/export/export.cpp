@@ -17,7 +17,7 @@
 #include "app/jobs/export/plan.h"
 #include "app/jobs/export/prepare.h"
 #include "app/jobs/export/textured.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "app/jobs/export/map_folder.h"
 #include "app/jobs/export_facts.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 #include "exchange/presets/preset.h"
 
 namespace weft::app {

@@ -7,7 +7,7 @@
 #include "app/jobs/export/map_folder.h"
 #include "app/jobs/export/plan.h"
 #include "app/jobs/export_facts.h"
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 namespace weft::app {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/export/export_request.h"
 
-#include "app/jobs/described_fields.h"
+#include "core/describe/described_fields.h"
 
 namespace weft::app {
 

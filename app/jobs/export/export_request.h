@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/jobs/export/export.h"
-#include "core/fields.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 

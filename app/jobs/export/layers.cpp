@@ -11,9 +11,9 @@
 
 #include "app/jobs/export/textured.h"
 #include "app/jobs/material/runtime.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/text.h"
 #include "core/image_io/image_io.h"
-#include "core/text.h"
 #include "exchange/materialx/materialx.h"
 
 namespace weft::app {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
 #include "core/image_io/image_io.h"
-#include "core/parallel.h"
 #include "exchange/presets/channels.h"
 #include "material/filtering/roughness_mips.h"
 

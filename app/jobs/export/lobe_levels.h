@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "app/jobs/export/map_folder.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 
 namespace weft::app {
 

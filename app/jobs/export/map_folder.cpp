@@ -10,12 +10,12 @@
 
 #include "app/jobs/maps/maps.h"
 #include "app/jobs/maps/session_sets.h"
-#include "core/albedo_scale.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/product.h"
+#include "core/base/text.h"
 #include "core/image_io/image_io.h"
-#include "core/product.h"
-#include "core/solve.h"
-#include "core/text.h"
+#include "core/rig/albedo_scale.h"
+#include "core/solve/solve.h"
 #include "exchange/document.h"
 
 namespace weft::app {

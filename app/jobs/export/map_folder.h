@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
-#include "core/json_document.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/rig/session.h"
 #include "exchange/presets/channels.h"
 
 namespace weft::app {

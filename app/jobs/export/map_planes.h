@@ -8,8 +8,8 @@
 
 #include "app/jobs/export/lobe_levels.h"
 #include "app/jobs/export/map_folder.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "exchange/presets/channels.h"
 #include "exchange/presets/mips.h"
 

@@ -10,7 +10,7 @@
 
 #include "app/jobs/export/map_planes.h"
 #include "app/jobs/export/preset_files.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "exchange/document.h"
 
 namespace weft::app {

@@ -7,10 +7,10 @@
 
 #include "app/jobs/export/export.h"
 #include "app/jobs/export/map_folder.h"
-#include "core/image.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "core/image_io/image_io.h"
-#include "core/json_document.h"
-#include "core/result.h"
 #include "exchange/presets/pack.h"
 
 namespace weft::app {

@@ -11,8 +11,8 @@
 #include "app/jobs/maps/map_work.h"
 #include "app/jobs/material/build.h"
 #include "app/jobs/material/material_place.h"
-#include "core/files.h"
-#include "core/text.h"
+#include "core/base/files.h"
+#include "core/base/text.h"
 #include "exchange/presets/channels.h"
 
 namespace weft::app {

@@ -6,8 +6,8 @@
 #include "app/jobs/export/export.h"
 #include "app/jobs/export/map_folder.h"
 #include "app/jobs/export/plan.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
-#include "core/files.h"
-#include "core/text.h"
+#include "core/base/files.h"
+#include "core/base/text.h"
 
 namespace weft::app {
 namespace {

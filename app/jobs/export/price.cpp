@@ -14,8 +14,8 @@
 #include "app/jobs/export/map_planes.h"
 #include "app/jobs/export/prepare.h"
 #include "app/jobs/export/texture_file.h"
-#include "core/field_json.h"
-#include "core/temporary_folder.h"
+#include "core/base/temporary_folder.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

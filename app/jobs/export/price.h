@@ -7,9 +7,9 @@
 #include "app/jobs/export/export.h"
 #include "app/jobs/export/map_folder.h"
 #include "app/jobs/export/plan.h"
-#include "core/job.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 #include "exchange/presets/loss.h"
 
 namespace weft::app {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/tiled_texture.h"
 #include "exchange/blocks/dds.h"
 #include "exchange/blocks/decode.h"

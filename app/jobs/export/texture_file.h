@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <string>
 
-#include "core/image.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "core/image_io/image_io.h"
-#include "core/result.h"
 #include "exchange/presets/mips.h"
 #include "exchange/presets/pack.h"
 

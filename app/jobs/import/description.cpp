@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 #include "library/metadata.h"

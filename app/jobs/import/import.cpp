@@ -10,8 +10,8 @@
 
 #include "app/jobs/import/photographs_import.h"
 #include "capture/scan/journal.h"
-#include "core/files.h"
-#include "core/product.h"
+#include "core/base/files.h"
+#include "core/base/product.h"
 
 namespace weft::app {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "app/jobs/import/import_plan.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

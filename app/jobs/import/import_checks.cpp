@@ -8,9 +8,9 @@
 #include <system_error>
 #include <utility>
 
-#include "core/files.h"
-#include "core/same_camera.h"
-#include "core/suits.h"
+#include "core/base/files.h"
+#include "core/rig/same_camera.h"
+#include "core/rig/suits.h"
 
 namespace weft::app {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "app/jobs/import/description.h"
 #include "app/jobs/import/source_frame.h"
-#include "core/calibration.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 
 // Whether photographs can be one session of a rig.
 
@@ -27,7 +27,7 @@ struct CommonSetting {
 Result<CommonSetting> setting_of(const std::vector<SourceFrame>& frames, const ImportDescription& said,
                                  const Calibration& calibration);
 
-/// Whether a calibration suits the session that is to be made: core/suits.h, and the size of the picture.
+/// Whether a calibration suits the session that is to be made: core/rig/suits.h, and the size of the picture.
 Result<void> check_calibration(const Calibration& calibration, const Session& session,
                                const SourceFrame& frame);
 

@@ -12,9 +12,9 @@
 #include "app/jobs/import/photographs_import.h"
 #include "app/jobs/import/source_groups.h"
 #include "capture/rig.h"
-#include "core/error_json.h"
-#include "core/files.h"
-#include "core/text.h"
+#include "core/base/files.h"
+#include "core/base/text.h"
+#include "core/describe/error_json.h"
 
 namespace weft::app {
 namespace {

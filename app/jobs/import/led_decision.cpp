@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/statistics.h"
+#include "core/base/statistics.h"
 
 namespace weft::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/jobs/import/source_frame.h"
 #include "capture/scan/light_assignment.h"
 #include "capture/scan/light_fit.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 // Which frame of a session belongs to which LED.
 

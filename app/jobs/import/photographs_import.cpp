@@ -7,9 +7,9 @@
 #include <set>
 #include <utility>
 
-#include "core/field_json.h"
-#include "core/files.h"
-#include "core/text.h"
+#include "core/base/files.h"
+#include "core/base/text.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

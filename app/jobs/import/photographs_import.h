@@ -6,9 +6,9 @@
 
 #include "app/jobs/import/import_plan.h"
 #include "app/jobs/import/source_folders.h"
-#include "core/fields.h"
-#include "core/result.h"
-#include "core/solve_parts.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
+#include "core/solve/solve_parts.h"
 
 namespace weft::app {
 

@@ -9,8 +9,8 @@
 #include <system_error>
 
 #include "app/jobs/import/name_pattern.h"
-#include "app/jobs/linear_image.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/image_io/linear_image.h"
 
 namespace weft::app {
 namespace {

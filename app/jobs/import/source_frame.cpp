@@ -5,12 +5,12 @@
 #include <limits>
 #include <utility>
 
-#include "app/jobs/linear_image.h"
 #include "capture/camera/photograph_facts.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
-#include "core/iso_time.h"
-#include "core/statistics.h"
+#include "core/base/iso_time.h"
+#include "core/base/statistics.h"
+#include "core/image_io/linear_image.h"
 
 namespace weft::app {
 namespace {

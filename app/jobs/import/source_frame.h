@@ -9,8 +9,8 @@
 #include "app/jobs/import/name_pattern.h"
 #include "app/jobs/import/source_folders.h"
 #include "capture/scan/glance.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/raw_frame.h"
 
 namespace weft::app {
 

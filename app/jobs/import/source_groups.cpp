@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "app/jobs/import/led_decision.h"
-#include "core/text.h"
+#include "core/base/text.h"
 #include "library/session_name.h"
 
 namespace weft::app {

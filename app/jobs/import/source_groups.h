@@ -10,8 +10,8 @@
 #include "app/jobs/import/name_pattern.h"
 #include "app/jobs/import/source_folders.h"
 #include "app/jobs/import/source_frame.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 
 // Which photographs are of one session.
 

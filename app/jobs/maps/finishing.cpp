@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "app/jobs/maps/yarn_picture.h"
-#include "core/percent.h"
+#include "core/base/percent.h"
 #include "material/filtering/detail.h"
 #include "material/finish/color.h"
 #include "material/finish/crop.h"

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "app/jobs/maps/recipe.h"
-#include "core/image.h"
-#include "core/job.h"
-#include "core/json_document.h"
-#include "core/result.h"
-#include "core/verdict.h"
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/solve/verdict.h"
 #include "material/surface.h"
 #include "report/drawing.h"
 

@@ -10,9 +10,9 @@
 
 #include "app/jobs/maps/map_work.h"
 #include "app/jobs/maps/surface_files.h"
+#include "core/base/statistics.h"
 #include "core/image_io/image_io.h"
-#include "core/solve_record.h"
-#include "core/statistics.h"
+#include "core/solve/solve_record.h"
 #include "material/finish/periodic_height.h"
 #include "material/maps/cavity.h"
 #include "material/maps/curl.h"

@@ -8,7 +8,7 @@
 
 #include "app/jobs/maps/map_work.h"
 #include "app/jobs/maps/surface_files.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "material/filtering/detail.h"
 

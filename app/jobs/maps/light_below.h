@@ -5,10 +5,10 @@
 #include <filesystem>
 
 #include "app/jobs/rectify.h"
-#include "core/calibration.h"
-#include "core/image.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 
 namespace weft::app {
 

@@ -12,9 +12,9 @@
 #include "app/jobs/maps/map_work.h"
 #include "app/jobs/maps/surface_files.h"
 #include "app/jobs/planned_cloth.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "material/filtering/gloss.h"
 #include "material/filtering/roughness_mips.h"
 

@@ -5,7 +5,7 @@
 
 #include "app/jobs/maps/map_set_facts.h"
 #include "app/jobs/maps/map_work.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/field_json.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/fields.h"
-#include "core/image.h"
+#include "core/base/json_document.h"
+#include "core/describe/fields.h"
+#include "core/image/image.h"
 #include "core/image_io/image_io.h"
-#include "core/json_document.h"
 
 namespace weft::app {
 

@@ -10,10 +10,10 @@
 
 #include "app/jobs/maps/map_facts.h"
 #include "app/jobs/maps/map_work.h"
-#include "core/fields.h"
-#include "core/image.h"
-#include "core/product.h"
-#include "core/verdict.h"
+#include "core/base/product.h"
+#include "core/describe/fields.h"
+#include "core/image/image.h"
+#include "core/solve/verdict.h"
 #include "library/current.h"
 #include "material/validation/validate.h"
 

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "app/jobs/maps/map_facts.h"
-#include "core/compression.h"
-#include "core/image.h"
-#include "core/job.h"
-#include "core/result.h"
-#include "core/verdict.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
+#include "core/image/compression.h"
+#include "core/image/image.h"
+#include "core/solve/verdict.h"
 #include "material/opacity/opacity.h"
 #include "material/surface.h"
 #include "solver/height/height.h"

@@ -10,11 +10,11 @@
 #include "app/jobs/maps/map_work.h"
 #include "app/jobs/maps/recipe.h"
 #include "app/jobs/rectify.h"
-#include "core/compression.h"
-#include "core/job.h"
-#include "core/json_document.h"
-#include "core/product.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/product.h"
+#include "core/base/result.h"
+#include "core/image/compression.h"
 
 namespace weft::app {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "app/jobs/maps/session_sets.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "report/page.h"
 
 namespace weft::app {

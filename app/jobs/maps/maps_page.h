@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "app/jobs/maps/map_set_facts.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/described_fields.h"
 #include "app/jobs/planned_cloth.h"
+#include "core/describe/described_fields.h"
 
 namespace weft::app {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "app/jobs/maps/maps.h"
-#include "core/job.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/files.h"
-#include "core/text.h"
+#include "core/base/files.h"
+#include "core/base/text.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 

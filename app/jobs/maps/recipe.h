@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 // A recipe: what is done to the maps of a solve, step by step, before other maps are derived from them. It
 // names no session, so that it runs again on any solve (docs/finishing.md).

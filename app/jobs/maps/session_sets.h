@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "app/jobs/maps/map_set_facts.h"
-#include "core/json_document.h"
-#include "core/product.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/json_document.h"
+#include "core/base/product.h"
+#include "core/base/result.h"
+#include "core/rig/session.h"
 #include "library/current.h"
 
 // The sets of maps of a session, and which of them others are made from.

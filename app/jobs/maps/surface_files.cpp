@@ -12,11 +12,11 @@
 
 #include "app/jobs/gloss_maps.h"
 #include "app/jobs/maps/map_facts.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/vec.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/solve_maps.h"
-#include "core/solve_record.h"
-#include "core/vec.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::app {
 namespace {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/compression.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/compression.h"
+#include "core/image/image.h"
 #include "material/surface.h"
 
 namespace weft::app {

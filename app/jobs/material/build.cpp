@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

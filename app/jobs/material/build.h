@@ -8,10 +8,10 @@
 #include "app/jobs/material/compose.h"
 #include "app/jobs/material/material_place.h"
 #include "app/jobs/material/tree.h"
-#include "core/job.h"
-#include "core/json_document.h"
-#include "core/product.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/product.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

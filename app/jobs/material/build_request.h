@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/jobs/material/compose.h"
-#include "core/fields.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 

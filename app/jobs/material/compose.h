@@ -6,10 +6,10 @@
 
 #include "app/jobs/material/map_set.h"
 #include "app/jobs/material/tree.h"
-#include "core/compression.h"
-#include "core/job.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/image/compression.h"
 
 namespace weft::app {
 

@@ -7,8 +7,8 @@
 #include <chrono>
 #include <utility>
 
-#include "core/files.h"
-#include "core/json_document.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
 
 namespace weft::app {
 namespace {

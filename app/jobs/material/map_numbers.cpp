@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "app/jobs/file_meaning.h"
-#include "app/jobs/linear_image.h"
 #include "app/jobs/material/map_set.h"
-#include "core/color_spaces.h"
+#include "core/image/color_spaces.h"
 #include "core/image_io/image_io.h"
+#include "core/image_io/linear_image.h"
 #include "material/filtering/gloss.h"
 
 namespace weft::app {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "app/jobs/material/material_file.h"
-#include "core/image.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "material/layers/field.h"
 #include "material/layers/parameters.h"
 

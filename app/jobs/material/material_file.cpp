@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "app/jobs/material/material_keys.h"
-#include "core/number.h"
+#include "core/base/number.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "app/jobs/material/material_place.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 // weft.material/1: what a person writes of a material (docs/materials.md). A file says only what differs from
 // the one that it inherits.

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "app/jobs/material/material_file.h"
-#include "core/text.h"
+#include "core/base/text.h"
 #include "core/toml/field_toml.h"
 #include "material/filtering/gloss.h"
 

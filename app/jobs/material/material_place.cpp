@@ -8,8 +8,8 @@
 #include <map>
 #include <system_error>
 
-#include "core/files.h"
-#include "core/text.h"
+#include "core/base/files.h"
+#include "core/base/text.h"
 
 namespace weft::app {
 namespace {

@@ -10,7 +10,7 @@
 #include "app/jobs/material/map_set.h"
 #include "app/jobs/material/material_file.h"
 #include "app/jobs/material/resolve.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "material/filtering/boxes.h"
 #include "material/layers/fit.h"
 #include "report/preview.h"

@@ -10,7 +10,7 @@
 
 #include "app/jobs/material/map_set.h"
 #include "app/jobs/material/material_keys.h"
-#include "core/text.h"
+#include "core/base/text.h"
 
 namespace weft::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/jobs/material/material_file.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "app/jobs/material/build.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

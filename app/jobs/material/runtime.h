@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "material/layers/fit.h"
 #include "material/layers/lay.h"
 #include "material/layers/masks.h"

@@ -6,7 +6,7 @@
 
 #include "app/jobs/material/map_set.h"
 #include "app/jobs/material/tree.h"
-#include "core/result.h"
+#include "core/base/result.h"
 #include "material/layers/field.h"
 
 namespace weft::app {

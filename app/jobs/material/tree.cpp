@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "app/jobs/material/material_keys.h"
-#include "core/product.h"
+#include "core/base/product.h"
 
 namespace weft::app {
 namespace {

@@ -12,9 +12,9 @@
 #include "app/jobs/material/digests.h"
 #include "app/jobs/material/map_set.h"
 #include "app/jobs/material/resolve.h"
-#include "core/image.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "material/layers/fit.h"
 
 namespace weft::app {

@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "app/jobs/material/build.h"
-#include "core/job.h"
-#include "core/result.h"
+#include "core/base/job.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

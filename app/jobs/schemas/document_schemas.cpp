@@ -14,11 +14,11 @@
 #include "app/jobs/sets/photograph_set.h"
 #include "batch/outcome.h"
 #include "batch/plan.h"
-#include "core/calibration.h"
-#include "core/calibration_parts.h"
-#include "core/field_json.h"
-#include "core/session.h"
-#include "core/solve.h"
+#include "core/describe/field_json.h"
+#include "core/rig/calibration.h"
+#include "core/rig/calibration_parts.h"
+#include "core/rig/session.h"
+#include "core/solve/solve.h"
 
 namespace weft::app {
 namespace {

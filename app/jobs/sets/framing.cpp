@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "calibration/camera/finder.h"
-#include "core/files.h"
-#include "core/light_field.h"
+#include "core/base/files.h"
+#include "core/rig/light_field.h"
 
 namespace weft::app {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "app/jobs/calibrate/board_photographs.h"
 #include "calibration/camera/markers.h"
-#include "core/calibration.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
 
 // What a person lays things by: where on the table the light falls and the calibration holds, and what is
 // seen of tags and a board in the finder. Places in a picture are shares of its width and height, from its

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "app/jobs/calibrate/sheet_files.h"
-#include "core/calibration.h"
-#include "core/field_json.h"
-#include "core/files.h"
-#include "core/iso_time.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
+#include "core/describe/field_json.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 namespace {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "app/jobs/calibrate/board_photographs.h"
-#include "core/fields.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 // The photographs that one step of a calibration needs, in a folder that `weft calibrate` reads as it is.
 

@@ -9,7 +9,7 @@
 #include "app/jobs/sets/photograph_set.h"
 #include "app/jobs/sets/set_guide.h"
 #include "capture/scan/series.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 // Series that nobody has a hand in: pairs of photographs alike, at several exposures.
 

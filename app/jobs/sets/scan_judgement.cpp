@@ -13,7 +13,7 @@
 #include "calibration/lights/paper_evenness.h"
 #include "capture/raw/decode.h"
 #include "capture/scan/histogram.h"
-#include "core/calibration.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "app/jobs/calibrate/sheet_files.h"
 #include "calibration/camera/markers.h"
-#include "core/camera.h"
-#include "core/session.h"
+#include "core/rig/camera.h"
+#include "core/rig/session.h"
 
 // What can be wrong with a scan for a calibration and is seen without solving it.
 

@@ -19,9 +19,9 @@
 #include "calibration/camera/guidance.h"
 #include "calibration/camera/markers.h"
 #include "capture/raw/decode.h"
-#include "core/files.h"
-#include "core/session.h"
-#include "core/statistics.h"
+#include "core/base/files.h"
+#include "core/base/statistics.h"
+#include "core/rig/session.h"
 
 namespace weft::app {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "app/jobs/sets/photograph_set.h"
-#include "core/calibration.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
 
 // What a set shows so far, and what a person does next.
 

@@ -12,8 +12,8 @@
 #include "capture/raw/decode.h"
 #include "capture/scan/histogram.h"
 #include "capture/scan/series.h"
-#include "core/calibration.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 namespace {

@@ -6,7 +6,7 @@
 #include "capture/devices.h"
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
 
 namespace weft::app {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 
 // What can be looked at of a folder of maps: those of a solve, a set that weft maps made, or the truth of a
 // simulated session.
@@ -19,7 +19,7 @@ enum class LayerKind {
   kNormal,  ///< X, Y, Z
   kColor,   ///< R, G, B, linear
   kScalar,  ///< one value
-  kFlags,   ///< bits of StatusBit (core/solve_record.h)
+  kFlags,   ///< bits of StatusBit (core/solve/solve_record.h)
   kMosaic,  ///< a raw frame
 };
 const char* name_of(LayerKind kind);  ///< "normal"

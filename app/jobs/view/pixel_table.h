@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "app/jobs/session_input.h"
-#include "core/job.h"
-#include "core/json_document.h"
-#include "core/result.h"
-#include "core/solve.h"
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/solve/solve.h"
 
 namespace weft::app {
 
@@ -30,8 +30,8 @@ class PixelTable {
   /// "readings": [{"led", "counts", "reading", "model", "sigma", "residual_sigma", "used", "left_out",
   /// "light_dir", "strength"}]} of a pixel, solved by itself in double (solver/in_double/pixel.h): what it
   /// makes of each reading. "left_out" is saturated, missing, shadowed or rejected, of whole shots not lit or
-  /// moved, of used readings null. Readings are as core/radiometry.h has them, after all that is known was
-  /// corrected; those of a pixel with three planes are their weighted sum over the strengths.
+  /// moved, of used readings null. Readings are as core/rig/radiometry.h has them, after all that is known
+  /// was corrected; those of a pixel with three planes are their weighted sum over the strengths.
   Json at(int x, int y) const;
 
  private:

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "calibration/camera/lens.h"
-#include "core/camera.h"
-#include "core/solve_record.h"
+#include "core/rig/camera.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::app {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "app/jobs/view/layers.h"
 #include "app/jobs/view/pyramid.h"
-#include "core/calibration.h"
-#include "core/image.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/rig/calibration.h"
 
 // What maps say in a place: numbers for people, from the maps' own values, never from tiles.
 

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "capture/raw/decode.h"
-#include "core/files.h"
-#include "core/json_document.h"
-#include "core/parallel.h"
-#include "core/solve_record.h"
-#include "core/status_blend.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
+#include "core/base/parallel.h"
+#include "core/solve/solve_record.h"
+#include "core/solve/status_blend.h"
 
 namespace weft::app {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 
 #include "app/jobs/view/layers.h"
-#include "core/image.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/raw_frame.h"
 #include "core/image_io/exr_window.h"
-#include "core/raw_frame.h"
-#include "core/result.h"
 
 namespace weft::app {
 

@@ -4,10 +4,10 @@
 #include <string>
 
 #include "app/jobs/view/layers.h"
-#include "core/image.h"
+#include "core/base/result.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "core/image_io/encode_image.h"
-#include "core/result.h"
-#include "core/vec.h"
 
 namespace weft::app {
 

@@ -10,7 +10,7 @@
 #include "app/server/api/requests.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/short_schema.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

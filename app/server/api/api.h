@@ -18,7 +18,7 @@
 #include "app/server/view/pixel_tables.h"
 #include "app/server/view/view_store.h"
 #include "capture/rig.h"
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 namespace weft::app {
 

@@ -3,7 +3,7 @@
 
 #include "app/server/api/job_places.h"
 #include "app/server/jobs/job.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 // Jobs that plan and run batches of solves, as their kinds add it (job_kinds.h).
 

@@ -8,7 +8,7 @@
 #include <charconv>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "library/session_name.h"
 
 namespace weft::app {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/base/result.h"
 
 // Where a daemon keeps plans of batches: STATE/batches/NAME/ with sessions.txt (what was asked for, a folder
 // a line), plan.jsonl (weft.batch/1) and plan.results/ beside it.

@@ -15,8 +15,8 @@
 #include "app/server/api/batch_place.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/viewed.h"
-#include "core/field_json.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/describe/field_json.h"
 #include "library/session_name.h"
 
 namespace weft::app {

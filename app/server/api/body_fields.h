@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/fields.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 

@@ -11,7 +11,7 @@
 #include "app/server/api/job_places.h"
 #include "app/server/api/requests.h"
 #include "app/server/api/scan_body.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/toml/field_toml.h"
 
 namespace weft::app {

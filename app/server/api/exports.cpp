@@ -11,7 +11,7 @@
 #include "app/server/api/api.h"
 #include "app/server/api/library_materials.h"
 #include "app/server/api/viewed.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "library/session_files.h"
 #include "library/session_name.h"
 

@@ -5,7 +5,7 @@
 
 #include "app/server/api/api.h"
 #include "app/server/http/routes.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -8,8 +8,8 @@
 #include "app/server/api/body_fields.h"
 #include "app/server/api/job_places.h"
 #include "app/server/jobs/job.h"
-#include "core/field_json.h"
-#include "core/fields.h"
+#include "core/describe/field_json.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 

@@ -3,8 +3,8 @@
 
 #include "app/server/api/job_places.h"
 #include "app/server/jobs/job.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -2,7 +2,7 @@
 #include "app/server/api/job_places.h"
 
 #include "app/server/api/body_fields.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "library/session_files.h"
 
 namespace weft::app {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "app/jobs/material/material_place.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

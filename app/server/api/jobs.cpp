@@ -15,9 +15,9 @@
 #include "app/server/api/library_materials.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_query.h"
-#include "core/field_json.h"
-#include "core/files.h"
-#include "core/number.h"
+#include "core/base/files.h"
+#include "core/base/number.h"
+#include "core/describe/field_json.h"
 #include "library/session_name.h"
 
 namespace weft::app {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "app/jobs/material/material_place.h"
-#include "core/product.h"
-#include "core/result.h"
+#include "core/base/product.h"
+#include "core/base/result.h"
 
 // Materials of the library as calls name them. No path is made of what a client says.
 

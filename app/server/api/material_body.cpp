@@ -9,7 +9,7 @@
 
 #include "app/jobs/material/resolve.h"
 #include "app/server/api/library_materials.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "library/session_name.h"
 
 namespace weft::app {

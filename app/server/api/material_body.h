@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -9,7 +9,7 @@
 #include "app/server/api/material_body.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/viewed.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "library/session_files.h"
 
 namespace weft::app {

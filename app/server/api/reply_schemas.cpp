@@ -8,9 +8,9 @@
 
 #include "app/server/http/error_json.h"
 #include "app/server/jobs/job.h"
-#include "core/error_json.h"
-#include "core/error_kind.h"
-#include "core/field_json.h"
+#include "core/base/error_kind.h"
+#include "core/describe/error_json.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

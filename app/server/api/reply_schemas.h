@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 namespace weft::app {
 

@@ -7,8 +7,8 @@
 
 #include "app/jobs/sets/photograph_set.h"
 #include "app/server/api/body_fields.h"
-#include "core/fields.h"
-#include "core/json_document.h"
+#include "core/base/json_document.h"
+#include "core/describe/fields.h"
 
 // What calls may say that are no job and no scan: read by read_body(), and described in OpenAPI by the
 // names that request_schemas() gives them.

@@ -11,8 +11,8 @@
 #include "app/server/api/scan_bill.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_choice.h"
-#include "core/calibration.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 namespace {

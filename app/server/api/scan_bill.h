@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "capture/scan/scan.h"
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 namespace weft::app {
 

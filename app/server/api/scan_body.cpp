@@ -7,9 +7,9 @@
 #include <set>
 #include <utility>
 
-#include "app/jobs/described_fields.h"
 #include "app/server/api/body_fields.h"
-#include "core/field_json.h"
+#include "core/describe/described_fields.h"
+#include "core/describe/field_json.h"
 #include "library/metadata.h"
 #include "library/session_name.h"
 

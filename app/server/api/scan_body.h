@@ -9,10 +9,10 @@
 
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
-#include "core/fields.h"
-#include "core/json_document.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
+#include "core/rig/session.h"
 
 namespace weft::app {
 

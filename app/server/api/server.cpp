@@ -11,8 +11,8 @@
 #include "app/server/api/api.h"
 #include "app/server/api/awaited.h"
 #include "app/server/rig/logbook.h"
-#include "core/files.h"
-#include "core/solve_record.h"
+#include "core/base/files.h"
+#include "core/solve/solve_record.h"
 #include "firmware/protocol/protocol.h"
 
 namespace weft::app {

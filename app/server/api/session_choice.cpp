@@ -8,10 +8,10 @@
 
 #include "app/server/api/scan_body.h"
 #include "capture/scan/plan.h"
-#include "core/calibration.h"
-#include "core/files.h"
-#include "core/iso_time.h"
-#include "core/session.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
 #include "library/session_name.h"
 
 namespace weft::app {

@@ -7,9 +7,9 @@
 #include "app/server/library/library_service.h"
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
-#include "core/json_document.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/rig/session.h"
 #include "library/catalogue.h"
 
 namespace weft::app {

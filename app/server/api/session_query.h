@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "core/result.h"
+#include "core/base/result.h"
 #include "library/catalogue.h"
 
 namespace weft::app {

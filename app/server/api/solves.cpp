@@ -6,9 +6,9 @@
 #include "app/jobs/compare.h"
 #include "app/server/api/api.h"
 #include "app/server/api/viewed.h"
-#include "core/field_json.h"
-#include "core/files.h"
-#include "core/solve.h"
+#include "core/base/files.h"
+#include "core/describe/field_json.h"
+#include "core/solve/solve.h"
 #include "library/current.h"
 #include "library/session_files.h"
 

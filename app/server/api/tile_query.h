@@ -6,7 +6,7 @@
 #include "app/jobs/view/pyramid.h"
 #include "app/jobs/view/tile_picture.h"
 #include "app/server/http/routes.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -10,11 +10,11 @@
 #include "app/jobs/view/layers.h"
 #include "app/jobs/view/probes.h"
 #include "app/server/api/api.h"
-#include "core/calibration.h"
-#include "core/json_document.h"
-#include "core/result.h"
-#include "core/session.h"
-#include "core/solve.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
+#include "core/solve/solve.h"
 
 // Maps that are looked at: those of a solve, the truth of a simulated session, a set that weft maps made.
 

@@ -6,8 +6,8 @@
 #include <stop_token>
 #include <string>
 
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

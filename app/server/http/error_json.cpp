@@ -6,7 +6,7 @@
 #include <new>
 #include <utility>
 
-#include "core/error_json.h"
+#include "core/describe/error_json.h"
 
 namespace weft::app {
 namespace {

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 
 namespace weft::app {
 

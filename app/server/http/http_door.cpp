@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "app/server/http/error_json.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "app/server/http/request_frame.h"
-#include "core/descriptor.h"
-#include "core/result.h"
+#include "core/base/descriptor.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -15,7 +15,7 @@
 
 #include "app/server/http/cookies.h"
 #include "app/server/http/path_pattern.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

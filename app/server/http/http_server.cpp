@@ -23,7 +23,7 @@
 #include "app/server/http/conditions.h"
 #include "app/server/http/error_json.h"
 #include "app/server/http/path_pattern.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

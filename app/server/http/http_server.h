@@ -10,7 +10,7 @@
 #include "app/server/http/http_door.h"
 #include "app/server/http/http_guard.h"
 #include "app/server/http/routes.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

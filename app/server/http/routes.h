@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "app/server/http/conditions.h"
-#include "core/descriptor.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/descriptor.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/field_json.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

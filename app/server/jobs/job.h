@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/fields.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/describe/fields.h"
 
 namespace weft::app {
 
@@ -46,7 +46,7 @@ struct JobStatus {
   double seconds = 0;               ///< that it ran, without those that it was held for
   std::optional<int> exit_code;
   std::vector<std::string> notes;  ///< what it said to people
-  Json error;                      ///< as core/error_json.h has it; null where there was none
+  Json error;                      ///< as core/describe/error_json.h has it; null where there was none
   Json result;                     ///< the document that its verb prints with --json; null until it is done
 };
 

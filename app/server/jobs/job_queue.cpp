@@ -12,9 +12,9 @@
 #include <sstream>
 #include <utility>
 
-#include "core/error_json.h"
-#include "core/files.h"
-#include "core/iso_time.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
+#include "core/describe/error_json.h"
 
 namespace weft::app {
 namespace {

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "app/server/jobs/job.h"
-#include "core/process.h"
-#include "core/result.h"
+#include "core/base/process.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "library/session_name.h"
 
 namespace weft::app {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "app/server/library/looker.h"
-#include "core/result.h"
-#include "core/session.h"
+#include "core/base/result.h"
+#include "core/rig/session.h"
 #include "library/catalogue.h"
 #include "library/edits.h"
 

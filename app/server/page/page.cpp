@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

@@ -11,9 +11,9 @@
 #include "capture/raw/decode.h"
 #include "capture/scan/histogram.h"
 #include "capture/scan/plan.h"
-#include "core/calibration.h"
-#include "core/error_json.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/describe/error_json.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 namespace {

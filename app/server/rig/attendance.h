@@ -20,8 +20,8 @@
 #include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/light_fit.h"
 #include "capture/scan/meter.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -14,7 +14,7 @@
 #include "app/server/http/error_json.h"
 #include "capture/raw/decode.h"
 #include "capture/scan/histogram.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "report/downsampler.h"
 #include "report/preview.h"

@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "capture/scan/scan.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -8,8 +8,8 @@
 
 #include "app/jobs/sets/framing.h"
 #include "capture/rig.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

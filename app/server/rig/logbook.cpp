@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "app/server/http/error_json.h"
-#include "core/files.h"
-#include "core/iso_time.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
 
 namespace weft::app {
 namespace {

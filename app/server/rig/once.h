@@ -5,8 +5,8 @@
 #include <mutex>
 #include <string>
 
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

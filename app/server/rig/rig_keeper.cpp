@@ -10,7 +10,7 @@
 
 #include "app/server/http/error_json.h"
 #include "app/server/rig/watched_camera.h"
-#include "core/error_json.h"
+#include "core/describe/error_json.h"
 #include "library/session_files.h"
 
 namespace weft::app {

@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "app/server/http/http_guard.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::app {
 namespace {

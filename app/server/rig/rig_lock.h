@@ -6,8 +6,8 @@
 #include <string>
 
 #include "capture/rig.h"
-#include "core/descriptor.h"
-#include "core/result.h"
+#include "core/base/descriptor.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "core/error_json.h"
+#include "core/describe/error_json.h"
 
 namespace weft::app {
 namespace {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "app/jobs/sets/set_work.h"
-#include "core/calibration.h"
-#include "core/error_json.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/describe/error_json.h"
+#include "core/rig/calibration.h"
 
 namespace weft::app {
 namespace {

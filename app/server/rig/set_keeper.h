@@ -10,8 +10,8 @@
 #include "app/server/http/event_log.h"
 #include "app/server/rig/rig_keeper.h"
 #include "capture/rig.h"
-#include "core/json_document.h"
-#include "core/result.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "app/jobs/view/pixel_table.h"
-#include "core/result.h"
-#include "core/solve.h"
+#include "core/base/result.h"
+#include "core/solve/solve.h"
 
 namespace weft::app {
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "app/jobs/view/pyramid.h"
-#include "core/result.h"
+#include "core/base/result.h"
 
 namespace weft::app {
 

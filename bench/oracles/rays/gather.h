@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "bench/oracles/rays/height_grid.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "solver/transport/relief.h"
 
 // Light that reaches a pixel from the cloth around it, and the share of the sky it sees: cosine-weighted

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "solver/transport/relief.h"
 
 // A relief as rays meet it, in the pixels of solver/transport/relief.h.

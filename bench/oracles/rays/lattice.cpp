@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bench/oracles/rays/height_grid.h"
-#include "core/image.h"
-#include "core/result.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
 #include "solver/transport/lights.h"
 #include "solver/transport/relief.h"
 

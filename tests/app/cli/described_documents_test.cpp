@@ -16,8 +16,8 @@
 #include "app/jobs/reflectance_facts.h"
 #include "app/jobs/report_facts.h"
 #include "app/jobs/sets/photograph_set.h"
-#include "core/field_json.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/describe/field_json.h"
 #include "tests/core/places.h"
 
 namespace weft::app {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "app/jobs/schemas/document_schemas.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/core/places.h"
 
 namespace weft::app {

@@ -18,7 +18,7 @@
 #include "app/jobs/material/material_file.h"
 #include "capture/camera/camera_profile.h"
 #include "capture/rig.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "exchange/presets/preset.h"
 #include "tests/core/image_io/scratch_folder.h"
 

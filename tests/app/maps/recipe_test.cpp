@@ -8,8 +8,8 @@
 #include <set>
 #include <string>
 
-#include "core/files.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/temporary_folder.h"
 
 namespace weft::app {
 namespace {

@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "app/jobs/material/watch.h"
-#include "core/files.h"
-#include "core/vec.h"
+#include "core/base/files.h"
+#include "core/base/vec.h"
 #include "material/layers/field.h"
 #include "tests/app/material/made_maps.h"
 

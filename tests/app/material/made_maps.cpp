@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "core/files.h"
-#include "core/json_document.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
 
 namespace weft::app {
 namespace {

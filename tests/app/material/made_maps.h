@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "app/jobs/material/build.h"
-#include "core/image.h"
+#include "core/base/temporary_folder.h"
+#include "core/image/image.h"
 #include "core/image_io/image_io.h"
-#include "core/temporary_folder.h"
 
 namespace weft::app {
 

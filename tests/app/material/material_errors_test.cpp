@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/app/material/made_maps.h"
 #include "tests/app/material/written.h"
 

@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "app/jobs/material/map_set.h"
-#include "core/color_spaces.h"
-#include "core/json_document.h"
-#include "core/solve_record.h"
-#include "core/temporary_folder.h"
+#include "core/base/json_document.h"
+#include "core/base/temporary_folder.h"
+#include "core/image/color_spaces.h"
+#include "core/solve/solve_record.h"
 #include "tests/app/meaning/small_set.h"
 
 namespace weft::app {

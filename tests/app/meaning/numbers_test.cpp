@@ -5,9 +5,9 @@
 
 #include <string>
 
-#include "core/files.h"
-#include "core/json_document.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
+#include "core/base/temporary_folder.h"
 #include "exchange/document.h"
 #include "tests/app/meaning/small_set.h"
 

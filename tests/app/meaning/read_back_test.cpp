@@ -10,11 +10,11 @@
 #include <string>
 
 #include "app/jobs/compare.h"
-#include "app/jobs/linear_image.h"
 #include "app/jobs/material/map_set.h"
-#include "core/files.h"
-#include "core/json_document.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
+#include "core/base/temporary_folder.h"
+#include "core/image_io/linear_image.h"
 #include "exchange/presets/preset.h"
 #include "tests/app/meaning/small_set.h"
 

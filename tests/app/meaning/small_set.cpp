@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "app/jobs/export/export.h"
-#include "core/files.h"
-#include "core/json_document.h"
+#include "core/base/files.h"
+#include "core/base/json_document.h"
 
 namespace weft::app {
 namespace {

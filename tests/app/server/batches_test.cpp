@@ -11,8 +11,8 @@
 
 #include "app/jobs/batch/plan_file.h"
 #include "app/server/api/batch_place.h"
-#include "core/files.h"
-#include "core/solve.h"
+#include "core/base/files.h"
+#include "core/solve/solve.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/server/scripted_rig.h"
 #include "tests/batch/sample_plan.h"

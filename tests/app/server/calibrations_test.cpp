@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "core/calibration.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/server/scripted_rig.h"
 #include "tests/core/places.h"

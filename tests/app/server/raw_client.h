@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/descriptor.h"
-#include "core/json_document.h"
+#include "core/base/descriptor.h"
+#include "core/base/json_document.h"
 
 namespace weft::app {
 

@@ -19,8 +19,8 @@
 #include <utility>
 
 #include "app/server/rig/rig_lock.h"
-#include "core/calibration.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/server/scripted_rig.h"
 #include "tests/core/places.h"

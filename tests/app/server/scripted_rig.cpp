@@ -11,7 +11,7 @@
 
 #include "capture/raw/decode.h"
 #include "capture/scan/histogram.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "simulator/camera/dng_writer.h"
 #include "tests/app/server/raw_client.h"
 

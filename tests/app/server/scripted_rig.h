@@ -8,7 +8,7 @@
 
 #include "app/server/rig_server.h"
 #include "capture/rig.h"
-#include "core/session.h"
+#include "core/rig/session.h"
 
 namespace weft::app {
 

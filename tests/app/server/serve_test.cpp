@@ -24,7 +24,7 @@
 #include "app/server/http/client.h"
 #include "app/server/rig/rig_lock.h"
 #include "capture/rig.h"
-#include "core/descriptor.h"
+#include "core/base/descriptor.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/core/places.h"
 

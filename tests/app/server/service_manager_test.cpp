@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "core/descriptor.h"
+#include "core/base/descriptor.h"
 
 namespace weft::app {
 namespace {

@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "app/jobs/solve.h"
-#include "core/solve.h"
-#include "core/temporary_folder.h"
+#include "core/base/temporary_folder.h"
+#include "core/solve/solve.h"
 
 namespace weft::app {
 

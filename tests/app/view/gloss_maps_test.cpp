@@ -8,13 +8,13 @@
 #include <cmath>
 
 #include "app/jobs/reflectance.h"
-#include "core/field_json.h"
-#include "core/files.h"
+#include "core/base/files.h"
+#include "core/base/temporary_folder.h"
+#include "core/base/vec.h"
+#include "core/describe/field_json.h"
 #include "core/image_io/image_io.h"
-#include "core/solve_record.h"
-#include "core/status_blend.h"
-#include "core/temporary_folder.h"
-#include "core/vec.h"
+#include "core/solve/solve_record.h"
+#include "core/solve/status_blend.h"
 
 namespace weft::app {
 namespace {

@@ -12,7 +12,7 @@
 #include "app/jobs/maps/maps.h"
 #include "app/server/rig_server.h"
 #include "bench/server/served_rig.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/view/asked_session.h"
 

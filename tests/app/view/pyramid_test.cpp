@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "app/jobs/view/tile_picture.h"
+#include "core/base/temporary_folder.h"
 #include "core/image_io/image_io.h"
-#include "core/temporary_folder.h"
 
 namespace weft::app {
 namespace {

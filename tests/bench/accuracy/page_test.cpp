@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/core/places.h"
 
 namespace weft::bench {

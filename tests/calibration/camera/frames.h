@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "calibration/camera/pose.h"
-#include "core/camera.h"
-#include "core/raw_frame.h"
+#include "core/image/raw_frame.h"
+#include "core/rig/camera.h"
 #include "simulator/scene/scene.h"
 
 namespace weft::test {

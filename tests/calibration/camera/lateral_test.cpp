@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "tests/calibration/camera/frames.h"
 
 namespace weft::calibration {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "bench/oracles/rig.h"
-#include "core/camera.h"
+#include "core/rig/camera.h"
 #include "simulator/light/incidence.h"
 
 namespace weft::test {

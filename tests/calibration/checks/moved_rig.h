@@ -5,7 +5,7 @@
 
 #include "calibration/camera/pose.h"
 #include "calibration/checks/movement.h"
-#include "core/calibration.h"
+#include "core/rig/calibration.h"
 
 namespace weft::test {
 

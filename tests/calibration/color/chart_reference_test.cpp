@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "core/color_spaces.h"
+#include "core/image/color_spaces.h"
 
 namespace weft::calibration {
 namespace {

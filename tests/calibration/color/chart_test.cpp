@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::calibration {
 namespace {

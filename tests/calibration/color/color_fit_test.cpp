@@ -10,7 +10,7 @@
 #include <random>
 
 #include "calibration/color/chart_reference.h"
-#include "core/color_transform.h"
+#include "core/rig/color_transform.h"
 
 namespace weft::calibration {
 namespace {

@@ -13,7 +13,7 @@
 #include <functional>
 
 #include "capture/board/led_board.h"
-#include "core/descriptor.h"
+#include "core/base/descriptor.h"
 #include "tests/capture/board/desk.h"
 #include "virtual_rig/terminal/modem_lines.h"
 

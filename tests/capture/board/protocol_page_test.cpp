@@ -13,7 +13,7 @@
 #include <string>
 
 #include "capture/board/board_replies.h"
-#include "core/descriptor.h"
+#include "core/base/descriptor.h"
 #include "tests/capture/board/desk.h"
 #include "tests/core/places.h"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::capture {
 namespace {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "capture/camera/camera_link.h"
-#include "core/files.h"
-#include "core/iso_time.h"
+#include "core/base/files.h"
+#include "core/base/iso_time.h"
 #include "simulator/camera/dng_writer.h"
 #include "tests/capture/raw/dng_bytes.h"
 #include "virtual_rig/ptp/virtual_camera.h"

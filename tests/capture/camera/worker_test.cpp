@@ -11,7 +11,7 @@
 #include <fstream>
 
 #include "capture/camera/worker_process.h"
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 #include "tests/capture/camera/link_bench.h"
 
 namespace weft::capture {

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "core/raw_frame.h"
+#include "core/image/raw_frame.h"
 #include "simulator/camera/dng_writer.h"
 
 namespace weft::capture {

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <set>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/capture/scan/files_under.h"
 
 namespace weft::capture {

@@ -9,7 +9,7 @@
 
 #include "capture/raw/decode.h"
 #include "capture/scan/plan.h"
-#include "core/files.h"
+#include "core/base/files.h"
 
 namespace weft::test {
 namespace {

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/files.h"
-#include "core/session.h"
+#include "core/base/files.h"
+#include "core/rig/session.h"
 #include "tests/capture/scan/scan_bench.h"
 
 namespace weft::capture {

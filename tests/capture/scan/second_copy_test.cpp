@@ -10,7 +10,7 @@
 #include <fstream>
 #include <set>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/capture/scan/files_under.h"
 
 // A disk that garbles what it takes: the C++ library copies files by this call.

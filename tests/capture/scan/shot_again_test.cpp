@@ -5,7 +5,7 @@
 
 #include "capture/scan/plan.h"
 #include "capture/scan/second_copy.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/capture/scan/scan_bench.h"
 
 namespace weft::capture {

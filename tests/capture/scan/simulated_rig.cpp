@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "simulator/camera/dng_writer.h"
 
 namespace weft::test {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "tests/core/image_io/scratch_folder.h"
 #include "tests/core/places.h"
 

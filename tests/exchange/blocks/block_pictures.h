@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 // Pictures that tests of block formats encode.
 

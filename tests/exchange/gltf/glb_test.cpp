@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 #include "tests/exchange/export_checks.h"
 #include "tests/exchange/sample_material.h"
 

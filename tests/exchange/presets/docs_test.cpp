@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "exchange/presets/preset.h"
 #include "tests/core/places.h"
 

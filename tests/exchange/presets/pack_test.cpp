@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "core/color_spaces.h"
+#include "core/image/color_spaces.h"
 #include "tests/exchange/presets/maps.h"
 
 namespace weft::exchange {

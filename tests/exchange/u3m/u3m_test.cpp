@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 #include "exchange/archive/zip.h"
 #include "tests/exchange/export_checks.h"
 #include "tests/exchange/sample_material.h"

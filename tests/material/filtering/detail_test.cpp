@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "tests/material/made_surface.h"
 
 namespace weft::material {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "material/filtering/normal_length.h"
 
 namespace weft::material {

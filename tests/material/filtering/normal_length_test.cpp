@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "material/filtering/gloss.h"
 #include "tests/material/filtering/listing8.h"
 

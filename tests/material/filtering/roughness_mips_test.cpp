@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "tests/material/made_surface.h"
 
 namespace weft::material {

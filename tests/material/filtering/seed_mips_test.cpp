@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "material/filtering/gloss.h"
 #include "material/filtering/roughness_mips.h"
 

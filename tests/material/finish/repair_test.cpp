@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "material/finish/color.h"
 #include "material/finish/crop.h"
 #include "tests/material/weave.h"

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "material/surface.h"
 
 namespace weft::material {

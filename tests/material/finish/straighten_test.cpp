@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/solve_record.h"
-#include "core/statistics.h"
+#include "core/base/statistics.h"
+#include "core/solve/solve_record.h"
 #include "tests/material/finish/cloths.h"
 #include "tests/material/finish/repeating_share.h"
 

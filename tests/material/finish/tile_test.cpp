@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "material/finish/seam.h"
 #include "tests/material/finish/cloths.h"
 

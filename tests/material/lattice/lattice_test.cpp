@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "material/smooth.h"
 #include "tests/material/lattice/lattice_case.h"
 

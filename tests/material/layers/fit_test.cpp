@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "material/layers/lay.h"
 
 namespace weft::material {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::material {
 namespace {

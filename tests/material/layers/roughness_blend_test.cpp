@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::material {
 namespace {

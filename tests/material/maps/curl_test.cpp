@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/solve_record.h"
-#include "core/statistics.h"
+#include "core/base/statistics.h"
+#include "core/solve/solve_record.h"
 #include "tests/material/maps/slopes.h"
 
 namespace weft::material {

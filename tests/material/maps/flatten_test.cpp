@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "tests/material/maps/slopes.h"
 
 namespace weft::material {

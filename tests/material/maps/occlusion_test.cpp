@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "bench/oracles/sky_oracle.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "simulator/geometry/surface.h"
 #include "tests/material/maps/slopes.h"
 

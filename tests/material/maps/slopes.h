@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "core/image.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 
 namespace weft::material {
 

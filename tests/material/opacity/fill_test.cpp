@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "tests/material/made_surface.h"
 
 namespace weft::material {

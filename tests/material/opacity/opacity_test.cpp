@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "bench/oracles/mesh.h"
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "tests/material/made_surface.h"
 
 namespace weft::material {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "simulator/reflectance/ggx.h"
 #include "tests/material/made_surface.h"
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "core/image.h"
+#include "core/image/image.h"
 
 namespace weft::simulator {
 

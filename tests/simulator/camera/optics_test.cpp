@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "tests/simulator/camera/frame.h"
 
 namespace weft::simulator {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "simulator/geometry/surface.h"
 
 // Slope, shadow and openness of a periodic surface by marching over a grid of its heights: slow, obvious and

@@ -4,7 +4,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/simulator/scene/scenes.h"
 
 namespace weft::simulator {

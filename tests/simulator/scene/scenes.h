@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "simulator/scene/scene.h"
 #include "tests/core/places.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "tests/simulator/spectra/tables.h"
 
 namespace weft::simulator {

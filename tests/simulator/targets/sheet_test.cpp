@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::simulator {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "tests/simulator/transport/surfaces.h"
 
 namespace weft::simulator {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/solve_record.h"
+#include "core/solve/solve_record.h"
 #include "solver/deblur/filter.h"
 #include "solver/deblur/sharpen.h"
 

@@ -11,7 +11,7 @@
 #include <variant>
 
 #include "bench/oracles/rig.h"
-#include "core/light_field.h"
+#include "core/rig/light_field.h"
 #include "solver/diagnosis/robust_fit.h"
 
 namespace weft::solver {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 
-#include "core/solve_record.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::solver {
 namespace {

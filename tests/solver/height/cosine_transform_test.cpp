@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/oracles/rig.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::solver {
 namespace {

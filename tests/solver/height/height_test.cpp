@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "bench/oracles/rig.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "tests/solver/height/surface.h"
 
 namespace weft::solver {

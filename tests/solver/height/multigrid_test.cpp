@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "bench/oracles/rig.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/height/grid.h"
 #include "tests/solver/height/surface.h"
 

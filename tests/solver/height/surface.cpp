@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "bench/oracles/rig.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "core/image.h"
+#include "core/image/image.h"
 #include "solver/height/height.h"
 
 namespace weft::test {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/vec.h"
+#include "core/base/vec.h"
 
 namespace weft::solver {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/camera.h"
-#include "core/light_field.h"
+#include "core/rig/camera.h"
+#include "core/rig/light_field.h"
 #include "tests/solver/light_plan/ten_leds.h"
 
 namespace weft::solver {

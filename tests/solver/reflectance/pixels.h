@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/oracles/rig.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/reflectance/lobe_fit.h"
 
 // Pixels of a cloth in closed form, under four lights at 35 degrees from the zenith and six at 62.

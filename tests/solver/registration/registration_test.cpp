@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bench/oracles/rig.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
 #include "solver/sample_tiles.h"
 
 namespace weft::solver {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/image.h"
-#include "core/vec.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
 #include "solver/transport/lights.h"
 #include "solver/transport/relief.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "solver/transport/marched_shadows.h"
 #include "tests/bench/oracles/rays/traced.h"
 #include "tests/solver/transport/cloths.h"

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/image.h"
-#include "core/solve_record.h"
+#include "core/image/image.h"
+#include "core/solve/solve_record.h"
 
 namespace weft::solver {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "capture/raw/decode.h"
 #include "capture/raw/tiff_tags.h"
-#include "core/files.h"
+#include "core/base/files.h"
 #include "simulator/camera/saturation.h"
 #include "simulator/simulate.h"
 #include "tests/virtual_rig/small_scene.h"

@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/raw_frame.h"
+#include "core/image/raw_frame.h"
 #include "simulator/simulate.h"
 #include "tests/virtual_rig/small_scene.h"
 

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/json_document.h"
+#include "core/base/json_document.h"
 #include "tests/core/places.h"
 #include "tests/virtual_rig/ptp/client_process.h"
 #include "tests/virtual_rig/small_scene.h"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "app/jobs/planned_cloth.h"
-#include "core/files.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/temporary_folder.h"
 
 namespace weft::app {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "app/server/api/job_body.h"
 #include "app/server/api/job_kinds.h"
-#include "core/files.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/temporary_folder.h"
 #include "tests/core/places.h"
 
 namespace weft::app {

@@ -10,8 +10,8 @@
 
 #include "app/jobs/material/resolve.h"
 #include "app/server/api/library_materials.h"
-#include "core/files.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/temporary_folder.h"
 
 namespace weft::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "core/files.h"
+#include "core/base/files.h"
 #include "tests/core/places.h"
 
 namespace weft::app {

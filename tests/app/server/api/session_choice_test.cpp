@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <string>
 
-#include "core/files.h"
-#include "core/session.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/temporary_folder.h"
+#include "core/rig/session.h"
 
 namespace weft::app {
 namespace {

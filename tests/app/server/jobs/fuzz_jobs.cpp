@@ -10,7 +10,7 @@
 #include "app/server/api/job_body.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/jobs/job.h"
-#include "core/temporary_folder.h"
+#include "core/base/temporary_folder.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace weft;

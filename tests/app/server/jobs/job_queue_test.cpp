@@ -10,9 +10,9 @@
 #include <mutex>
 #include <thread>
 
-#include "core/field_json.h"
-#include "core/files.h"
-#include "core/temporary_folder.h"
+#include "core/base/files.h"
+#include "core/base/temporary_folder.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {

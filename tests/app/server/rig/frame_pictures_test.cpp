@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/session.h"
+#include "core/rig/session.h"
 #include "tests/app/server/scripted_rig.h"
 
 namespace weft::app {

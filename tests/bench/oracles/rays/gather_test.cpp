@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/parallel.h"
+#include "core/base/parallel.h"
 #include "tests/bench/oracles/rays/traced.h"
 
 namespace weft::test {

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "core/image/image.h"
+
+namespace weft {
+
+/// Colour of each site of the 2 x 2 filter cell, [y & 1][x & 1] on the active area: 0 red, 1 green on a red
+/// row, 2 blue, 3 green on a blue row. The two greens are kept apart until they are shown to agree.
+struct CfaPattern {
+  std::array<std::array<std::uint8_t, 2>, 2> site = {{{0, 1}, {3, 2}}};
+
+  std::uint8_t site_at(int x, int y) const {
+    return site[static_cast<std::size_t>(y & 1)][static_cast<std::size_t>(x & 1)];
+  }
+  /// 0 red, 1 green, 2 blue.
+  int channel_at(int x, int y) const {
+    const int s = site_at(x, y);
+    return s == 3 ? 1 : s;
+  }
+  friend bool operator==(const CfaPattern&, const CfaPattern&) = default;
+};
+
+/// What the file says about how a photograph was taken; zero or empty where it says nothing.
+struct ShotMetadata {
+  std::string make;
+  std::string model;
+  std::string serial;
+  double exposure_us = 0;
+  double iso = 0;
+  double f_number = 0;
+  double focal_mm = 0;  ///< of the lens, as it is set: not its equivalent on another format
+};
+
+/// A mosaic of sensor counts on the active area (margins removed, filter phase kept, upright).
+struct RawFrame {
+  Image<std::uint16_t> counts;
+  CfaPattern cfa;
+  std::array<std::array<float, 2>, 2> black = {};  ///< counts of no light, [y & 1][x & 1]
+  float white = 0;                                 ///< counts at which the sensor or converter is full
+  ShotMetadata shot;
+};
+
+}  // namespace weft

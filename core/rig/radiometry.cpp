@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/rig/radiometry.h"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/rig/radiometry.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target.h comes first.
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace weft {
+
+#ifndef WEFT_RADIOMETRY_ROW
+#define WEFT_RADIOMETRY_ROW
+// What one row of sites alternates between: [0] even columns, [1] odd columns.
+struct RadiometryRow {
+  const std::uint16_t* counts;
+  const std::uint16_t* dark;  // null without a dark shot
+  float black[2], saturated_from[2], per_count[2], a[2], b[2];
+  float per_second;
+};
+#endif
+
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+void read_row(const RadiometryRow& row, float* out, std::size_t width) {
+  constexpr std::size_t kAhead = 512;  // counts come from memory, many frames side by side
+  const hn::ScalableTag<float> d;
+  const hn::Rebind<std::int32_t, decltype(d)> di;
+  const hn::Rebind<std::uint16_t, decltype(d)> du16;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto load = [&](const std::uint16_t* p) {
+    return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(du16, p)));
+  };
+  const auto per_second = hn::Set(d, row.per_second);
+  const auto one = hn::Set(d, 1.0f);
+  const auto infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+  for (std::size_t x = 0; x < width; x += lanes) {
+    const auto alternate = [&](const float(&two)[2]) {
+      if (lanes == 1) return hn::Set(d, two[x & 1]);
+      return hn::OddEven(hn::Set(d, two[1]), hn::Set(d, two[0]));
+    };
+    hwy::Prefetch(row.counts + x + kAhead);
+    const auto counts = load(row.counts + x);
+    const auto dark = row.dark != nullptr ? load(row.dark + x) : alternate(row.black);
+    const auto v = hn::Mul(hn::Sub(counts, dark), alternate(row.per_count));
+    const auto linear = hn::Mul(v, hn::MulAdd(hn::MulAdd(alternate(row.b), v, alternate(row.a)), v, one));
+    const auto saturated = hn::Ge(counts, alternate(row.saturated_from));
+    hn::StoreU(hn::IfThenElse(saturated, infinity, hn::Mul(linear, per_second)), d, out + x);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace weft
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace weft {
+
+HWY_EXPORT(read_row);
+
+namespace {
+
+// What the measured black level has over the file's; the sites of the filter cell keep their differences.
+float black_offset(const RawFrame& like, const Response& response) {
+  if (!response.black_counts) return 0;
+  double mean = 0;
+  for (const auto& row : like.black) mean += static_cast<double>(row[0] + row[1]) / 4;
+  return static_cast<float>(*response.black_counts - mean);
+}
+
+}  // namespace
+
+Radiometry::Radiometry(const RawFrame& like, const RawFrame* dark, const Response& response,
+                       Exposure exposure)
+    : dark_(dark != nullptr ? dark->counts.plane() : View<const std::uint16_t>()),
+      cfa_(like.cfa),
+      per_second_(static_cast<float>(1.0 / (exposure.exposure_us * 1e-6 * exposure.iso / 100))) {
+  const float measured = dark == nullptr ? black_offset(like, response) : 0;
+  double mean_range = 0;
+  for (std::size_t y = 0; y < 2; ++y) {
+    for (std::size_t x = 0; x < 2; ++x) {
+      const float range = like.white - like.black[y][x];
+      const int site = like.cfa.site[y][x];
+      const auto channel = static_cast<std::size_t>(site == 3 ? 1 : site);
+      black_[y][x] = like.black[y][x] + measured;
+      saturated_from_[y][x] = like.black[y][x] + static_cast<float>(kSaturatedFrom) * range;
+      per_count_[y][x] = 1 / range;
+      linearity_a_[y][x] = static_cast<float>(response.linearity[channel][0]);
+      linearity_b_[y][x] = static_cast<float>(response.linearity[channel][1]);
+      mean_range += range / 4.0;
+    }
+  }
+  // s counts of light have variance s / gain.
+  const double reading_per_count = static_cast<double>(per_second_) / mean_range;
+  const double still = response.read_noise_counts * response.read_noise_counts;
+  noise_.per_reading = reading_per_count / response.electrons_per_count;
+  noise_.floor = reading_per_count * reading_per_count * still;
+  noise_.shared = dark != nullptr ? noise_.floor : 0;
+}
+
+void merge_exposures(std::span<const View<const float>> readings, std::span<const NoiseModel> noise,
+                     View<float> out) {
+  for (int y = 0; y < out.height(); ++y) {
+    for (int x = 0; x < out.width(); ++x) {
+      double light = 0, light_weight = 0;
+      bool is_full = false;
+      for (std::size_t i = 0; i < readings.size(); ++i) {
+        const float r = readings[i](x, y);
+        is_full = is_full || r == std::numeric_limits<float>::infinity();
+        if (!std::isfinite(r)) continue;
+        light += static_cast<double>(r) / noise[i].per_reading;
+        light_weight += 1 / noise[i].per_reading;
+      }
+      if (light_weight == 0) {
+        out(x, y) =
+            is_full ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+        continue;
+      }
+      double sum = 0, weight = 0;
+      for (std::size_t i = 0; i < readings.size(); ++i) {
+        const float r = readings[i](x, y);
+        if (!std::isfinite(r)) continue;
+        const double w = 1 / noise[i].variance(light / light_weight);
+        sum += w * static_cast<double>(r);
+        weight += w;
+      }
+      out(x, y) = static_cast<float>(sum / weight);
+    }
+  }
+}
+
+void Radiometry::read(View<const std::uint16_t> counts, Rect tile, View<float> out) const {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    const auto j = static_cast<std::size_t>(y & 1);
+    const RadiometryRow row = {counts.row(y) + tile.x0,
+                               dark_.empty() ? nullptr : dark_.row(y) + tile.x0,
+                               {black_[j][0], black_[j][1]},
+                               {saturated_from_[j][0], saturated_from_[j][1]},
+                               {per_count_[j][0], per_count_[j][1]},
+                               {linearity_a_[j][0], linearity_a_[j][1]},
+                               {linearity_b_[j][0], linearity_b_[j][1]},
+                               per_second_};
+    HWY_DYNAMIC_DISPATCH(read_row)(row, out.row(y - tile.y0), static_cast<std::size_t>(tile.width()));
+  }
+}
+
+}  // namespace weft
+#endif
