@@ -6,7 +6,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/copy_request.h"
+#include "capture/scan/copy_request.h"
 #include "capture/scan/second_copy.h"
 
 namespace weft::app {

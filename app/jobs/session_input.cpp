@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "app/jobs/session_conditions.h"
-#include "app/jobs/session_frames.h"
+#include "capture/frames/session_frames.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
 #include "core/image_io/linear_image.h"

@@ -77,7 +77,6 @@ const std::vector<Layer> kLayers = {
      {"app/jobs/", "batch/", "calibration/", "capture/", "core/", "exchange/", "firmware/protocol/",
       "library/", "material/", "pipeline/", "report/", "simulator/torture_request", "solve/", "solver/",
       "virtual_rig/control_socket"}},
-    {{"app/camera/"}, {"capture/camera/", "core/"}},
     {{"app/cli/"},
      {"app/jobs/", "app/server/", "batch/", "calibration/", "capture/", "core/", "exchange/", "library/",
       "material/", "pipeline/", "report/", "simulator/", "solve/", "solver/", "virtual_rig/rig_process"}},

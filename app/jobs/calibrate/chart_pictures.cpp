@@ -7,8 +7,8 @@
 #include <array>
 #include <utility>
 
-#include "app/jobs/raw_picture.h"
 #include "app/jobs/session_input.h"
+#include "capture/frames/raw_picture.h"
 #include "capture/raw/decode.h"
 #include "core/base/files.h"
 #include "core/image_io/linear_image.h"

@@ -9,7 +9,7 @@
 #include <mutex>
 #include <set>
 
-#include "app/jobs/session_frames.h"
+#include "capture/frames/session_frames.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
 #include "core/image_io/linear_image.h"

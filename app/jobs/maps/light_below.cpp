@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/raw_picture.h"
-#include "app/jobs/session_frames.h"
+#include "capture/frames/raw_picture.h"
+#include "capture/frames/session_frames.h"
 #include "capture/raw/raw_info.h"
 #include "material/rectify.h"
 

@@ -16,7 +16,6 @@
 #include "app/jobs/calibrate/patches.h"
 #include "app/jobs/calibrate/response.h"
 #include "app/jobs/calibrate/update.h"
-#include "app/jobs/copy_request.h"
 #include "app/jobs/export/export_request.h"
 #include "app/jobs/maps/maps_request.h"
 #include "app/jobs/material/build_request.h"
@@ -27,6 +26,7 @@
 #include "app/server/api/batch_body.h"
 #include "app/server/api/job_arguments.h"
 #include "app/server/api/library_materials.h"
+#include "capture/scan/copy_request.h"
 
 namespace weft::app {
 namespace {

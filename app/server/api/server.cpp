@@ -7,10 +7,10 @@
 #include <memory>
 #include <utility>
 
-#include "app/jobs/doctor.h"
 #include "app/server/api/api.h"
 #include "app/server/api/awaited.h"
 #include "app/server/rig/logbook.h"
+#include "capture/doctor/doctor.h"
 #include "core/base/files.h"
 #include "core/solve/solve_record.h"
 #include "firmware/protocol/protocol.h"

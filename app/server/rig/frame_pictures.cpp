@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/raw_picture.h"
 #include "app/server/http/error_json.h"
+#include "capture/frames/raw_picture.h"
 #include "capture/raw/decode.h"
 #include "capture/scan/histogram.h"
 #include "core/base/files.h"

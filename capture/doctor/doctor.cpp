@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/doctor.h"
+#include "capture/doctor/doctor.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/session_frames.h"
+#include "capture/frames/session_frames.h"
 
 #include <fmt/format.h>
 

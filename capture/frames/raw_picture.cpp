@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/raw_picture.h"
+#include "capture/frames/raw_picture.h"
 
 #include <optional>
 
