@@ -60,13 +60,18 @@ weft_precompile(weft_precompiled_tests
   DEPENDS nlohmann_json::nlohmann_json GTest::gtest_main GTest::gmock
   OPTIONS ${WEFT_TEST_OPTIONS})
 
+# Where jobs and not mathematics stand (docs/architecture.md). Nothing of it is measured: time to compile is worth more
+# than speed, and sanitizers watch it.
+set(WEFT_UPPER_HALVES "^(calibration/(guide|run)|exchange/export|library/(import|run)|material/(assets|read|run)|solve/(files|input|report|run|session))$")
+
 # weft_library(NAME DEPENDS ... SOURCES ...): one folder, one target. PLAIN: without the precompiled headers, for C and
 # for what is compiled with other options. APART: each file by itself. With WEFT_BUILT a library that no sanitizer is to
 # watch is not compiled: its archive is that of this other build.
 function(weft_library name)
   cmake_parse_arguments(ARG "PLAIN;APART" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;OPTIONS" ${ARGN})
   cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE folder)
-  if(WEFT_BUILT AND folder MATCHES "^(batch|bench|calibration|material|pipeline|report|simulator|solver)(/|$)")
+  if(WEFT_BUILT AND folder MATCHES "^(batch|bench|calibration|library/batch|material|report|simulator|solve|solver)(/|$)"
+     AND NOT folder MATCHES "${WEFT_UPPER_HALVES}")
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE weft_settings ${WEFT_BUILT}/${folder}/lib${name}.a
       ${ARG_DEPENDS} ${ARG_PRIVATE_DEPENDS})
@@ -75,6 +80,9 @@ function(weft_library name)
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC weft_settings ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
   target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
+  if(folder MATCHES "${WEFT_UPPER_HALVES}")
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   if(NOT ARG_PLAIN)
     target_precompile_headers(${name} REUSE_FROM weft_precompiled)
   endif()

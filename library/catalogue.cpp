@@ -15,8 +15,8 @@
 #include "core/base/parallel.h"
 #include "core/describe/error_json.h"
 #include "core/solve/solve.h"
-#include "library/current.h"
 #include "library/session_files.h"
+#include "solve/session/current.h"
 
 namespace weft::library {
 

@@ -30,7 +30,7 @@ struct Entry {
   int shots = 0, solves = 0;
   int lit_shot = 0;                   ///< index of the first lit one that is used
   std::string lit_sha256;             ///< and its digest; empty where there is none
-  std::string current_solve;          ///< id (library/current.h); empty where there is no solve
+  std::string current_solve;          ///< id (solve/session/current.h); empty where there is no solve
   std::string taken;                  ///< ISO 8601, of the first shot, else when session.json was written
   std::string written;                ///< ISO 8601, when session.json was
   std::uint64_t bytes = 0;            ///< of its folder, when it was read

@@ -11,9 +11,9 @@
 
 #include "core/base/text.h"
 #include "core/solve/solve.h"
-#include "library/current.h"
-#include "library/left_out.h"
-#include "library/session_lock.h"
+#include "solve/session/current.h"
+#include "solve/session/left_out.h"
+#include "solve/session/session_lock.h"
 
 namespace weft::library {
 namespace {

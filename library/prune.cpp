@@ -8,9 +8,9 @@
 #include "core/base/files.h"
 #include "core/base/json_document.h"
 #include "core/solve/solve.h"
-#include "library/current.h"
 #include "library/session_files.h"
-#include "library/session_lock.h"
+#include "solve/session/current.h"
+#include "solve/session/session_lock.h"
 
 namespace weft::library {
 namespace {

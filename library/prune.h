@@ -17,8 +17,8 @@ struct Prunable {
   std::uint64_t bytes = 0;
 };
 
-/// Solves of a session that are neither its current one (library/current.h) nor among the `keep` newest. All
-/// of them can be made again from the photographs, which are never among the folders. Errors of
+/// Solves of a session that are neither its current one (solve/session/current.h) nor among the `keep`
+/// newest. All of them can be made again from the photographs, which are never among the folders. Errors of
 /// read_session().
 Result<std::vector<Prunable>> prunable(const std::filesystem::path& session, int keep);
 

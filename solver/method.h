@@ -120,7 +120,7 @@ std::unique_ptr<Method> sparse_method();
 enum class Level { kPreview, kFast, kStandard, kRobust, kReference };
 
 /// What a level solves: tiles as they come, tiles of a picture of half the size, or tiles of a whole frame
-/// several times, with what the frame says of the light over it (pipeline/reference.h).
+/// several times, with what the frame says of the light over it (solve/levels/reference.h).
 enum class Extent { kTiles, kHalfSize, kWholeFrame };
 
 /// Levels and methods by the name a person gives them.

@@ -27,11 +27,11 @@
 #include "app/jobs/batch/plan_batch.h"
 #include "app/jobs/batch/run_batch.h"
 #include "app/jobs/batch/survey.h"
-#include "app/jobs/report.h"
 #include "batch/session_list.h"
 #include "core/base/files.h"
 #include "core/describe/field_check.h"
 #include "core/solve/solve.h"
+#include "solve/report/report.h"
 
 namespace weft::app {
 namespace {

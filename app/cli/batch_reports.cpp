@@ -18,9 +18,9 @@
 #include "app/jobs/batch/batch_page.h"
 #include "app/jobs/batch/farm.h"
 #include "app/jobs/batch/merge_batch.h"
-#include "app/jobs/report.h"
 #include "core/base/process.h"
 #include "core/describe/field_json.h"
+#include "solve/report/report.h"
 
 namespace weft::app {
 namespace {

@@ -9,13 +9,13 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
 #include "app/jobs/compare.h"
-#include "app/jobs/solve.h"
 #include "core/base/files.h"
 #include "core/base/process.h"
 #include "core/base/temporary_folder.h"
 #include "core/rig/session.h"
 #include "simulator/scene/resolution.h"
 #include "simulator/simulate.h"
+#include "solve/run/solve.h"
 #include "virtual_rig/rig_process.h"
 
 namespace weft::app {

@@ -7,8 +7,8 @@
 
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
-#include "app/jobs/explain.h"
-#include "app/jobs/ladder_picture.h"
+#include "solve/run/explain.h"
+#include "solve/run/ladder_picture.h"
 
 namespace weft::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "app/cli/verb.h"
-#include "app/jobs/solve_request.h"
 #include "core/base/result.h"
+#include "solve/run/solve_request.h"
 
 namespace weft::app {
 

@@ -16,7 +16,6 @@
 #include "app/cli/rig_owner.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/solve.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/http/error_json.h"
 #include "app/server/rig/rig_lock.h"
@@ -26,6 +25,7 @@
 #include "core/describe/field_json.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
+#include "solve/run/solve.h"
 
 namespace weft::app {
 namespace {

@@ -14,15 +14,15 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
 #include "app/jobs/last_check.h"
-#include "app/jobs/left_out_report.h"
-#include "app/jobs/reflectance.h"
-#include "app/jobs/solve_request.h"
 #include "capture/rig.h"
 #include "core/base/files.h"
 #include "core/describe/field_check.h"
 #include "core/describe/field_json.h"
 #include "core/rig/session.h"
-#include "library/current.h"
+#include "solve/report/left_out_report.h"
+#include "solve/report/reflectance.h"
+#include "solve/run/solve_request.h"
+#include "solve/session/current.h"
 
 namespace weft::app {
 namespace {

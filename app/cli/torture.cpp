@@ -9,12 +9,12 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/solve.h"
 #include "app/jobs/torture_request.h"
 #include "core/base/files.h"
 #include "core/base/temporary_folder.h"
 #include "simulator/scene/scene.h"
 #include "simulator/simulate.h"
+#include "solve/run/solve.h"
 
 namespace weft::app {
 namespace {

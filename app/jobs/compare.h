@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "app/jobs/normal_comparison.h"
 #include "core/base/result.h"
+#include "solve/files/normal_comparison.h"
 
 namespace weft::app {
 

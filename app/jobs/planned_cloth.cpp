@@ -7,10 +7,10 @@
 #include <array>
 #include <utility>
 
-#include "app/jobs/reflectance_facts.h"
 #include "core/base/json_document.h"
 #include "core/base/vec.h"
 #include "core/describe/field_json.h"
+#include "solve/report/reflectance_facts.h"
 
 namespace weft::app {
 namespace {

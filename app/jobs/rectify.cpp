@@ -19,8 +19,8 @@
 #include "core/rig/session.h"
 #include "core/solve/solve.h"
 #include "core/solve/solve_record.h"
-#include "library/current.h"
 #include "material/rectify.h"
+#include "solve/session/current.h"
 
 namespace weft::app {
 namespace {

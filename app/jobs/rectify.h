@@ -14,7 +14,7 @@
 #include "core/describe/fields.h"
 #include "core/image/compression.h"
 #include "core/image/image.h"
-#include "library/current.h"
+#include "solve/session/current.h"
 
 namespace weft::app {
 

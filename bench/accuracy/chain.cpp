@@ -12,7 +12,6 @@
 #include "app/jobs/calibrate/lights.h"
 #include "app/jobs/calibrate/response.h"
 #include "app/jobs/compare.h"
-#include "app/jobs/solve.h"
 #include "bench/accuracy/scenes.h"
 #include "bench/accuracy/score.h"
 #include "core/base/files.h"
@@ -21,6 +20,7 @@
 #include "core/image_io/image_io.h"
 #include "simulator/captures.h"
 #include "simulator/simulate.h"
+#include "solve/run/solve.h"
 
 namespace weft::bench {
 namespace {

@@ -10,9 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/explain.h"
-#include "app/jobs/pictures.h"
-#include "app/jobs/solve.h"
 #include "bench/accuracy/accuracy.h"
 #include "bench/accuracy/scenes.h"
 #include "bench/accuracy/score.h"
@@ -23,10 +20,13 @@
 #include "core/base/statistics.h"
 #include "core/base/temporary_folder.h"
 #include "core/base/vec.h"
-#include "pipeline/frame.h"
 #include "simulator/camera/sensor.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
+#include "solve/files/pictures.h"
+#include "solve/levels/frame.h"
+#include "solve/run/explain.h"
+#include "solve/run/solve.h"
 #include "solver/uncertainty/model_sigma.h"
 
 namespace weft::bench {

@@ -14,10 +14,10 @@
 #include "bench/accuracy/scenes.h"
 #include "bench/accuracy/score.h"
 #include "core/base/parallel.h"
-#include "pipeline/gloss.h"
-#include "pipeline/sample_gloss.h"
 #include "simulator/reflectance/presets.h"
 #include "simulator/sampling/random.h"
+#include "solve/gloss/gloss.h"
+#include "solve/gloss/sample_gloss.h"
 #include "solver/reflectance/glossy_method.h"
 
 namespace weft::bench {

@@ -11,15 +11,15 @@
 #include <utility>
 
 #include "app/jobs/compare.h"
-#include "app/jobs/photo_input.h"
 #include "bench/accuracy/score.h"
 #include "bench/base/solved_maps.h"
 #include "core/base/parallel.h"
 #include "core/image_io/image_io.h"
-#include "pipeline/cut.h"
-#include "pipeline/frame.h"
-#include "pipeline/plane_weights.h"
 #include "simulator/sampling/random.h"
+#include "solve/input/photo_input.h"
+#include "solve/levels/frame.h"
+#include "solve/photographs/cut.h"
+#include "solve/photographs/plane_weights.h"
 #include "solver/method.h"
 
 namespace weft::bench {

@@ -14,7 +14,7 @@
 namespace weft::bench {
 
 struct PhotosOptions {
-  std::filesystem::path folder;      ///< DiLiGenT layout (app/jobs/photo_input.h) with normal_gt.exr
+  std::filesystem::path folder;      ///< DiLiGenT layout (solve/input/photo_input.h) with normal_gt.exr
   int pick = 10;                     ///< lights a subset; 0: all
   int subsets = 20;                  ///< of so many lights each
   std::uint32_t seed = 1;            ///< of the subsets

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "pipeline/tile_reader.h"
 #include "simulator/build_passes.h"
 #include "simulator/plan.h"
 #include "simulator/reflectance/presets.h"
 #include "simulator/sampling/random.h"
+#include "solve/photographs/tile_reader.h"
 
 namespace weft::bench {
 namespace {

@@ -8,8 +8,8 @@
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "core/rig/camera.h"
-#include "pipeline/photographs.h"
 #include "simulator/scene/scene.h"
+#include "solve/photographs/photographs.h"
 
 // The cloths that accuracy is measured on: three families of plain weave in six materials, under the ten
 // default LEDs, with near light, relief, cast shadows, two bounces of interreflection, sheen and the noise of

@@ -9,14 +9,14 @@
 #include <memory>
 #include <utility>
 
-#include "app/jobs/normal_comparison.h"
 #include "bench/base/bound.h"
 #include "core/base/parallel.h"
 #include "core/image/tiles.h"
-#include "pipeline/bands.h"
-#include "pipeline/cut.h"
-#include "pipeline/frame.h"
-#include "pipeline/tile_reader.h"
+#include "solve/bands/bands.h"
+#include "solve/files/normal_comparison.h"
+#include "solve/levels/frame.h"
+#include "solve/photographs/cut.h"
+#include "solve/photographs/tile_reader.h"
 
 namespace weft::bench {
 namespace {

@@ -12,8 +12,8 @@
 #include "bench/base/solved_maps.h"
 #include "bench/base/study.h"
 #include "core/base/result.h"
-#include "pipeline/frame.h"
-#include "pipeline/reference.h"
+#include "solve/levels/frame.h"
+#include "solve/levels/reference.h"
 #include "solver/method.h"
 
 namespace weft::bench {

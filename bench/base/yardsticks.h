@@ -7,7 +7,7 @@
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "core/rig/light_field.h"
-#include "pipeline/photographs.h"
+#include "solve/photographs/photographs.h"
 
 // What speed is measured against, in the same run.
 

@@ -16,7 +16,6 @@
 #include "app/jobs/batch/batch_page.h"
 #include "app/jobs/batch/merge_batch.h"
 #include "app/jobs/batch/plan_file.h"
-#include "app/jobs/solve.h"
 #include "batch/outcome.h"
 #include "batch/plan.h"
 #include "bench/batch/archive.h"
@@ -27,6 +26,7 @@
 #include "core/rig/calibration.h"
 #include "core/solve/solve.h"
 #include "simulator/scene/scene.h"
+#include "solve/run/solve.h"
 
 namespace weft::bench {
 namespace {

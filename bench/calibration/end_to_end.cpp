@@ -14,13 +14,13 @@
 #include "app/jobs/calibrate/color.h"
 #include "app/jobs/calibrate/lights.h"
 #include "app/jobs/calibrate/response.h"
-#include "app/jobs/solve.h"
 #include "calibration/color/color_fit.h"
 #include "core/base/temporary_folder.h"
 #include "core/image_io/image_io.h"
 #include "simulator/captures.h"
 #include "simulator/scene/scene.h"
 #include "simulator/simulate.h"
+#include "solve/run/solve.h"
 
 namespace weft::bench {
 namespace {

@@ -24,8 +24,8 @@
 #include "exchange/blocks/decode.h"
 #include "exchange/blocks/encode.h"
 #include "exchange/presets/preset.h"
-#include "pipeline/frame.h"
 #include "simulator/scene/scene.h"
+#include "solve/levels/frame.h"
 #include "solver/method.h"
 
 namespace weft::bench {

@@ -12,23 +12,23 @@
 #include <vector>
 
 #include "app/jobs/compare.h"
-#include "app/jobs/normal_comparison.h"
-#include "app/jobs/session_input.h"
-#include "app/jobs/solve.h"
 #include "bench/base/bound.h"
 #include "bench/base/rig.h"
 #include "bench/base/solved_maps.h"
 #include "core/base/temporary_folder.h"
 #include "core/base/vec.h"
 #include "core/image_io/image_io.h"
-#include "pipeline/bands.h"
-#include "pipeline/shifts.h"
 #include "simulator/camera/movement.h"
 #include "simulator/effects/random_key.h"
 #include "simulator/reflectance/presets.h"
 #include "simulator/sampling/random.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
+#include "solve/bands/bands.h"
+#include "solve/files/normal_comparison.h"
+#include "solve/input/session_input.h"
+#include "solve/levels/shifts.h"
+#include "solve/run/solve.h"
 #include "solver/method.h"
 #include "solver/normals/seed.h"
 
@@ -549,7 +549,7 @@ Result<void> add_rows(const Swatch& cloth, bool moves, std::span<const solver::L
 
 /// Cloths through DNG files, with shadows, bounces, defocus and noise. In three families of matt weave at two
 /// sizes of pixel one shot of ten has moved; in ten glossy cloths none has. How well the shift is measured,
-/// and the mean error without movement, with registration off and with it on (pipeline/shifts.h).
+/// and the mean error without movement, with registration off and with it on (solve/levels/shifts.h).
 /// `taken_back` is the share of the damage that registration undoes, `predicted_deg` cost_deg of the shot,
 /// `real_deg` what the movement adds to the rms error.
 Result<Rows> registration(const StudyOptions& options) {

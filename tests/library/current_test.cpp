@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which solve of a session others are made from, and what is said of the others.
-#include "library/current.h"
+#include "solve/session/current.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/base/files.h"
-#include "library/left_out.h"
-#include "library/session_lock.h"
+#include "solve/session/left_out.h"
+#include "solve/session/session_lock.h"
 #include "tests/library/shelf.h"
 
 namespace weft::library {

@@ -11,7 +11,6 @@
 
 #include "app/jobs/calibrate/camera.h"
 #include "app/jobs/rectify.h"
-#include "app/jobs/solve.h"
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
 #include "capture/raw/decode.h"
@@ -19,6 +18,7 @@
 #include "simulator/camera/dng_writer.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
+#include "solve/run/solve.h"
 #include "tests/system/workspace.h"
 
 namespace weft::test {

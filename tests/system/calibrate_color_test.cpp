@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 
-#include "app/jobs/solve.h"
 #include "calibration/color/chart.h"
 #include "calibration/color/color_fit.h"
 #include "core/base/files.h"
@@ -17,6 +16,7 @@
 #include "core/rig/color_transform.h"
 #include "simulator/simulate.h"
 #include "simulator/spectra/observer.h"
+#include "solve/run/solve.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 

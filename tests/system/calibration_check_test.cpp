@@ -13,13 +13,13 @@
 #include "app/jobs/calibrate/patches.h"
 #include "app/jobs/calibrate/rig_evidence.h"
 #include "app/jobs/calibrate/update.h"
-#include "app/jobs/session_input.h"
-#include "app/jobs/solve.h"
 #include "calibration/camera/pose.h"
 #include "core/base/files.h"
 #include "simulator/captures.h"
 #include "simulator/captures_layout.h"
 #include "simulator/scene/rig.h"
+#include "solve/input/session_input.h"
+#include "solve/run/solve.h"
 #include "tests/system/program.h"
 
 // A rig that is checked, moves, is found out and updated: 600 x 400 pixels over 200 mm of table.

@@ -13,16 +13,16 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/session_input.h"
 #include "capture/raw/decode.h"
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "core/image_io/image_io.h"
 #include "core/rig/calibration.h"
 #include "core/solve/solve_record.h"
-#include "pipeline/bands.h"
-#include "pipeline/calibration_channels.h"
 #include "simulator/camera/dng_writer.h"
+#include "solve/bands/bands.h"
+#include "solve/bands/calibration_channels.h"
+#include "solve/input/session_input.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {

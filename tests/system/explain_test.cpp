@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a level is expected to give and cost, before it is paid.
-#include "app/jobs/explain.h"
+#include "solve/run/explain.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

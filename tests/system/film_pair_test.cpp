@@ -8,9 +8,9 @@
 #include <functional>
 #include <vector>
 
-#include "app/jobs/session_input.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
+#include "solve/input/session_input.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "app/jobs/compare.h"
-#include "app/jobs/solve.h"
 #include "core/image_io/image_io.h"
+#include "solve/run/solve.h"
 #include "tests/simd_targets.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "app/jobs/compare.h"
-#include "app/jobs/solve.h"
 #include "core/image_io/image_io.h"
+#include "solve/run/solve.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 

@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/gloss_maps.h"
 #include "app/jobs/maps/surface_files.h"
-#include "app/jobs/solve.h"
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "core/rig/session.h"
+#include "solve/files/gloss_maps.h"
+#include "solve/run/solve.h"
 #include "tests/material/weave.h"
 #include "tests/system/program.h"
 #include "tests/system/session_test.h"

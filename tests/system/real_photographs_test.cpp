@@ -10,9 +10,9 @@
 #include <fstream>
 #include <string>
 
-#include "app/jobs/photo_input.h"
 #include "core/image_io/image_io.h"
-#include "pipeline/left_out.h"
+#include "solve/correction/left_out.h"
+#include "solve/input/photo_input.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string>
 
-#include "app/jobs/solve.h"
 #include "core/image_io/image_io.h"
+#include "solve/run/solve.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {

@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/facts_json.h"
-#include "app/jobs/session_input.h"
 #include "core/base/vec.h"
 #include "core/image_io/image_io.h"
-#include "pipeline/frame.h"
-#include "pipeline/reference.h"
+#include "solve/input/session_input.h"
+#include "solve/levels/frame.h"
+#include "solve/levels/reference.h"
+#include "solve/run/facts_json.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 

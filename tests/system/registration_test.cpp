@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A cloth that somebody touched between the shots, from raw frames to normals.
-#include "pipeline/shifts.h"
+#include "solve/levels/shifts.h"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/facts_json.h"
-#include "app/jobs/session_input.h"
-#include "app/jobs/solve.h"
 #include "core/base/vec.h"
 #include "core/describe/field_json.h"
-#include "pipeline/bands.h"
+#include "solve/bands/bands.h"
+#include "solve/input/session_input.h"
+#include "solve/run/facts_json.h"
+#include "solve/run/solve.h"
 #include "solver/method.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

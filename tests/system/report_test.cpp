@@ -12,15 +12,15 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/exposure_verdict.h"
-#include "app/jobs/report.h"
-#include "app/jobs/report_page.h"
-#include "app/jobs/session_input.h"
-#include "app/jobs/solve.h"
 #include "core/describe/field_json.h"
 #include "core/rig/calibration.h"
-#include "pipeline/evidence.h"
 #include "simulator/scene/scene.h"
+#include "solve/input/session_input.h"
+#include "solve/photographs/evidence.h"
+#include "solve/report/report.h"
+#include "solve/report/report_page.h"
+#include "solve/run/exposure_verdict.h"
+#include "solve/run/solve.h"
 #include "solver/diagnosis/diagnosis.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

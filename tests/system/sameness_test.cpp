@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/solve.h"
+#include "solve/run/solve.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 

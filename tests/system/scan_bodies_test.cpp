@@ -15,8 +15,6 @@
 #include <thread>
 #include <vector>
 
-#include "app/jobs/session_input.h"
-#include "app/jobs/solve.h"
 #include "capture/board/led_board.h"
 #include "capture/camera/camera_link.h"
 #include "capture/camera/camera_profile.h"
@@ -24,6 +22,8 @@
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
 #include "core/base/files.h"
+#include "solve/input/session_input.h"
+#include "solve/run/solve.h"
 #include "tests/virtual_rig/small_scene.h"
 #include "virtual_rig/terminal/modem_lines.h"
 #include "virtual_rig/virtual_rig.h"

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <string>
 
-#include "app/jobs/solve.h"
 #include "core/base/json_document.h"
 #include "core/rig/session.h"
+#include "solve/run/solve.h"
 #include "tests/system/program.h"
 #include "tests/system/session_test.h"
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/report.h"
 #include "core/base/files.h"
 #include "core/rig/session.h"
+#include "solve/report/report.h"
 #include "solver/method.h"
 #include "tests/system/program.h"
 #include "tests/system/samples.h"

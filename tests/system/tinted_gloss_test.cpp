@@ -9,10 +9,10 @@
 #include <filesystem>
 
 #include "app/jobs/maps/maps.h"
-#include "app/jobs/solve.h"
 #include "core/base/json_document.h"
 #include "core/image_io/image_io.h"
 #include "core/solve/solve_record.h"
+#include "solve/run/solve.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <string>
 
-#include "app/jobs/solve.h"
 #include "core/image_io/image_io.h"
 #include "core/rig/light_field.h"
 #include "core/solve/solve_record.h"
+#include "solve/run/solve.h"
 #include "solver/method.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

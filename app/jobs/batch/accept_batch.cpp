@@ -9,9 +9,9 @@
 
 #include "app/jobs/batch/merge_batch.h"
 #include "core/rig/session.h"
-#include "library/current.h"
 #include "library/metadata.h"
 #include "library/prune.h"
+#include "solve/session/current.h"
 
 namespace weft::app {
 namespace {

@@ -25,10 +25,10 @@ struct Accepted {
   std::string why;        ///< it was left as it is
 };
 
-/// Chooses the new solve of each session, as a person does (library/current.h). Until then it stands above
-/// previews alone. Sessions that became worse are left as they are, and so are those whose current solve is
-/// another than when it was planned. Nothing is removed. Errors of read_batch(); kUsage where solves lie
-/// beside the archive, or a name is none of the plan's.
+/// Chooses the new solve of each session, as a person does (solve/session/current.h). Until then it stands
+/// above previews alone. Sessions that became worse are left as they are, and so are those whose current
+/// solve is another than when it was planned. Nothing is removed. Errors of read_batch(); kUsage where solves
+/// lie beside the archive, or a name is none of the plan's.
 Result<std::vector<Accepted>> accept_batch(const AcceptBatchOptions& options);
 
 /// A solve that is not needed any more.

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "app/jobs/report.h"
 #include "core/solve/solve.h"
+#include "solve/report/report.h"
 
 namespace weft::app {
 namespace {

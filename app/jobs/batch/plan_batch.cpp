@@ -14,7 +14,6 @@
 #include "app/jobs/batch/sample.h"
 #include "app/jobs/batch/survey.h"
 #include "app/jobs/export/preset_files.h"
-#include "app/jobs/report.h"
 #include "batch/choice.h"
 #include "batch/forecast.h"
 #include "batch/outcome.h"
@@ -23,6 +22,7 @@
 #include "core/base/parallel.h"
 #include "core/solve/solve.h"
 #include "core/solve/solve_record.h"
+#include "solve/report/report.h"
 #include "solver/method.h"
 
 namespace weft::app {

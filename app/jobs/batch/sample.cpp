@@ -11,10 +11,10 @@
 
 #include "app/jobs/batch/lean.h"
 #include "app/jobs/batch/solve_change.h"
-#include "app/jobs/explain.h"
 #include "core/base/temporary_folder.h"
 #include "core/base/vec.h"
 #include "core/image_io/image_io.h"
+#include "solve/run/explain.h"
 
 namespace weft::app {
 namespace {
@@ -30,7 +30,7 @@ std::optional<double> turn_in_the_middle(const fs::path& cut_file, const fs::pat
   const Result<MapRows> before = MapRows::open(before_file, channels);
   const Size size = cut->info.size;
   if (!before || before->size() != frame || size.width > frame.width || size.height > frame.height) return {};
-  // As app/jobs/explain.h takes it: on whole cells of the colour filter.
+  // As solve/run/explain.h takes it: on whole cells of the colour filter.
   const int x0 = (frame.width - size.width) / 2 / 2 * 2, y0 = (frame.height - size.height) / 2 / 2 * 2;
   const Result<Image<float>> part = before->read({x0, y0, x0 + size.width, y0 + size.height});
   if (!part) return {};

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "app/jobs/batch/survey.h"
-#include "app/jobs/explain.h"
 #include "batch/forecast.h"
 #include "batch/plan.h"
 #include "core/base/job.h"
 #include "core/base/result.h"
+#include "solve/run/explain.h"
 
 namespace weft::app {
 
@@ -20,9 +20,9 @@ struct SampleOptions {
   std::optional<SharedSeconds>& shared;    ///< of the sessions before
 };
 
-/// Prices levels of one session on its own photographs (app/jobs/explain.h), as many as level_names() has, or
-/// the one. Where it has a solve, the seconds hold comparing with that, as measured here, and each level that
-/// it can be compared with says how far its middle turns. Errors of explain_session().
+/// Prices levels of one session on its own photographs (solve/run/explain.h), as many as level_names() has,
+/// or the one. Where it has a solve, the seconds hold comparing with that, as measured here, and each level
+/// that it can be compared with says how far its middle turns. Errors of explain_session().
 Result<std::vector<batch::Forecast>> measure_session(const Candidate& candidate, const SampleOptions& options,
                                                      const JobContext& context);
 

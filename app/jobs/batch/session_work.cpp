@@ -9,11 +9,11 @@
 #include "app/jobs/batch/follow_ups.h"
 #include "app/jobs/batch/lean.h"
 #include "app/jobs/batch/solve_change.h"
-#include "app/jobs/solve.h"
 #include "core/base/files.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
 #include "core/solve/solve_record.h"
+#include "solve/run/solve.h"
 
 namespace weft::app {
 namespace {

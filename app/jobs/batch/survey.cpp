@@ -12,13 +12,13 @@
 #include <utility>
 
 #include "app/jobs/batch/lean.h"
-#include "app/jobs/solve.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
 #include "core/base/product.h"
 #include "core/rig/calibration.h"
 #include "core/solve/solve.h"
-#include "library/current.h"
+#include "solve/run/solve.h"
+#include "solve/session/current.h"
 #include "solver/method.h"
 
 namespace weft::app {

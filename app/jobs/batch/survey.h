@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/session_input.h"
 #include "batch/forecast.h"
 #include "batch/plan.h"
 #include "core/base/job.h"
 #include "core/base/result.h"
 #include "core/image/image.h"
+#include "solve/input/session_input.h"
 
 // What sessions are, seen without opening a photograph.
 

@@ -7,14 +7,14 @@
 #include <array>
 #include <utility>
 
-#include "app/jobs/session_input.h"
 #include "capture/frames/raw_picture.h"
 #include "capture/raw/decode.h"
 #include "core/base/files.h"
 #include "core/image_io/linear_image.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
-#include "pipeline/bands.h"
+#include "solve/bands/bands.h"
+#include "solve/input/session_input.h"
 #include "solver/method.h"
 
 namespace weft::app {

@@ -18,12 +18,12 @@
 #include "app/jobs/calibrate/sheet_captures.h"
 #include "app/jobs/calibrate/sheet_evidence.h"
 #include "app/jobs/calibrate/sheet_files.h"
-#include "app/jobs/session_input.h"
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
 #include "core/describe/field_check.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
+#include "solve/input/session_input.h"
 
 namespace weft::app {
 namespace {

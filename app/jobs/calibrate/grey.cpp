@@ -11,10 +11,10 @@
 #include "app/jobs/calibrate/patches.h"
 #include "app/jobs/calibrate/rig_evidence.h"
 #include "app/jobs/calibrate/scale_file.h"
-#include "app/jobs/session_input.h"
 #include "calibration/lights/grey_chart.h"
 #include "calibration/lights/physical.h"
 #include "core/base/files.h"
+#include "solve/input/session_input.h"
 
 namespace weft::app {
 namespace {

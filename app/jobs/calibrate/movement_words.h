@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "app/jobs/report.h"
 #include "calibration/checks/movement.h"
 #include "core/base/json_document.h"
+#include "solve/report/report.h"
 
 // What happened to a rig, for people and for programs.
 

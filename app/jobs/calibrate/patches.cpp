@@ -11,11 +11,11 @@
 #include "app/jobs/calibrate/described.h"
 #include "app/jobs/calibrate/rig_evidence.h"
 #include "app/jobs/calibrate/sheet_files.h"
-#include "app/jobs/session_input.h"
 #include "core/base/files.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
-#include "pipeline/conditions/drift.h"
+#include "solve/conditions/drift.h"
+#include "solve/input/session_input.h"
 
 namespace weft::app {
 namespace {

@@ -10,7 +10,7 @@
 #include "calibration/checks/movement.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
-#include "pipeline/photographs.h"
+#include "solve/photographs/photographs.h"
 
 // What photographs show of the rig itself: tags and white patches on the table.
 

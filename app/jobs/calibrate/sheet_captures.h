@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "app/jobs/calibrate/sheet_files.h"
-#include "app/jobs/report.h"
 #include "calibration/lights/light_map.h"
 #include "calibration/lights/paper_model.h"
 #include "calibration/lights/sheet_blocks.h"
@@ -14,6 +13,7 @@
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
+#include "solve/report/report.h"
 
 // Sessions of a sheet of white paper, as averages of blocks.
 

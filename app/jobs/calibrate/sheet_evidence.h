@@ -11,7 +11,7 @@
 #include "core/base/job.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
-#include "pipeline/photographs.h"
+#include "solve/photographs/photographs.h"
 
 namespace weft::app {
 

@@ -10,12 +10,12 @@
 
 #include "app/jobs/import/led_decision.h"
 #include "app/jobs/import/source_folders.h"
-#include "app/jobs/photo_input.h"
 #include "core/base/job.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
+#include "solve/input/photo_input.h"
 
 // Folders of photographs that other rigs and programs left, as sessions of weft: what would be made of them.
 

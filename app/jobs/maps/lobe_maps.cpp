@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/jobs/gloss_maps.h"
 #include "app/jobs/maps/map_work.h"
 #include "app/jobs/maps/surface_files.h"
 #include "app/jobs/planned_cloth.h"
@@ -17,6 +16,7 @@
 #include "core/solve/solve_record.h"
 #include "material/filtering/gloss.h"
 #include "material/filtering/roughness_mips.h"
+#include "solve/files/gloss_maps.h"
 
 namespace weft::app {
 namespace {

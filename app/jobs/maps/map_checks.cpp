@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/pictures.h"
 #include "report/downsampler.h"
 #include "report/preview.h"
+#include "solve/files/pictures.h"
 
 namespace weft::app {
 namespace {

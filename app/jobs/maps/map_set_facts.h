@@ -14,8 +14,8 @@
 #include "core/describe/fields.h"
 #include "core/image/image.h"
 #include "core/solve/verdict.h"
-#include "library/current.h"
 #include "material/validation/validate.h"
+#include "solve/session/current.h"
 
 // What maps.json says of a set of maps (weft.maps/1).
 

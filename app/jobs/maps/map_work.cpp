@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "app/jobs/pictures.h"
 #include "core/image_io/image_io.h"
 #include "report/downsampler.h"
 #include "report/preview.h"
+#include "solve/files/pictures.h"
 
 namespace weft::app {
 namespace {

@@ -16,7 +16,6 @@
 #include "app/jobs/maps/map_checks.h"
 #include "app/jobs/maps/maps_page.h"
 #include "app/jobs/maps/surface_files.h"
-#include "app/jobs/pictures.h"
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "core/image_io/image_io.h"
@@ -27,6 +26,7 @@
 #include "material/opacity/opacity.h"
 #include "report/downsampler.h"
 #include "report/preview.h"
+#include "solve/files/pictures.h"
 
 namespace weft::app {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/base/product.h"
 #include "core/base/result.h"
 #include "core/rig/session.h"
-#include "library/current.h"
+#include "solve/session/current.h"
 
 // The sets of maps of a session, and which of them others are made from.
 

@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/gloss_maps.h"
 #include "app/jobs/maps/map_facts.h"
 #include "core/base/files.h"
 #include "core/base/vec.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/solve_maps.h"
 #include "core/solve/solve_record.h"
+#include "solve/files/gloss_maps.h"
 
 namespace weft::app {
 namespace {

@@ -14,7 +14,6 @@
 #include "app/jobs/material/build.h"
 #include "app/jobs/material/preview.h"
 #include "app/jobs/material/stack.h"
-#include "app/jobs/pictures.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
 #include "core/image_io/image_io.h"
@@ -23,6 +22,7 @@
 #include "material/filtering/gloss.h"
 #include "material/filtering/roughness_mips.h"
 #include "material/layers/lay.h"
+#include "solve/files/pictures.h"
 
 namespace weft::app {
 namespace {

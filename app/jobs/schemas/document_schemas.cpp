@@ -9,8 +9,6 @@
 #include "app/jobs/last_check.h"
 #include "app/jobs/maps/map_set_facts.h"
 #include "app/jobs/rectify.h"
-#include "app/jobs/reflectance_facts.h"
-#include "app/jobs/report_facts.h"
 #include "app/jobs/sets/photograph_set.h"
 #include "batch/outcome.h"
 #include "batch/plan.h"
@@ -19,6 +17,8 @@
 #include "core/rig/calibration_parts.h"
 #include "core/rig/session.h"
 #include "core/solve/solve.h"
+#include "solve/report/reflectance_facts.h"
+#include "solve/report/report_facts.h"
 
 namespace weft::app {
 namespace {

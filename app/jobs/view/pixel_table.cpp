@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "pipeline/frame.h"
-#include "pipeline/tile_reader.h"
+#include "solve/levels/frame.h"
+#include "solve/photographs/tile_reader.h"
 #include "solver/in_double/pixel.h"
 #include "solver/in_double/pixelwise.h"
 

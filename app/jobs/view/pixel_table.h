@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/session_input.h"
 #include "core/base/job.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/solve/solve.h"
+#include "solve/input/session_input.h"
 
 namespace weft::app {
 

@@ -21,12 +21,12 @@
 #include "app/jobs/material/build_request.h"
 #include "app/jobs/rectify.h"
 #include "app/jobs/rig_plan_request.h"
-#include "app/jobs/solve_request.h"
 #include "app/jobs/torture_request.h"
 #include "app/server/api/batch_body.h"
 #include "app/server/api/job_arguments.h"
 #include "app/server/api/library_materials.h"
 #include "capture/scan/copy_request.h"
+#include "solve/run/solve_request.h"
 
 namespace weft::app {
 namespace {

@@ -7,11 +7,11 @@
 #include "app/server/api/api.h"
 #include "app/server/api/session_choice.h"
 #include "app/server/api/session_query.h"
-#include "library/current.h"
-#include "library/left_out.h"
 #include "library/metadata.h"
 #include "library/session_files.h"
 #include "library/session_name.h"
+#include "solve/session/current.h"
+#include "solve/session/left_out.h"
 
 namespace weft::app {
 namespace {

@@ -9,8 +9,8 @@
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "core/solve/solve.h"
-#include "library/current.h"
 #include "library/session_files.h"
+#include "solve/session/current.h"
 
 namespace weft::app {
 namespace {

@@ -19,9 +19,9 @@
 #include "core/describe/field_json.h"
 #include "core/rig/camera.h"
 #include "core/rig/lights.h"
-#include "library/current.h"
 #include "library/session_files.h"
 #include "report/preview.h"
+#include "solve/session/current.h"
 
 namespace weft::app {
 namespace {

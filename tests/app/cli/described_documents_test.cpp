@@ -13,11 +13,11 @@
 #include "app/jobs/last_check.h"
 #include "app/jobs/maps/map_set_facts.h"
 #include "app/jobs/rectify.h"
-#include "app/jobs/reflectance_facts.h"
-#include "app/jobs/report_facts.h"
 #include "app/jobs/sets/photograph_set.h"
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
+#include "solve/report/reflectance_facts.h"
+#include "solve/report/report_facts.h"
 #include "tests/core/places.h"
 
 namespace weft::app {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/jobs/solve.h"
 #include "core/base/temporary_folder.h"
 #include "core/solve/solve.h"
+#include "solve/run/solve.h"
 
 namespace weft::app {
 

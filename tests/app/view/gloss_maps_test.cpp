@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/gloss_maps.h"
+#include "solve/files/gloss_maps.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "app/jobs/reflectance.h"
 #include "core/base/files.h"
 #include "core/base/temporary_folder.h"
 #include "core/base/vec.h"
@@ -15,6 +14,7 @@
 #include "core/image_io/image_io.h"
 #include "core/solve/solve_record.h"
 #include "core/solve/status_blend.h"
+#include "solve/report/reflectance.h"
 
 namespace weft::app {
 namespace {

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/conditions/drift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
+
+namespace weft::pipeline {
+namespace {
+
+// Light of a repeat over that of the photograph of the same light.
+std::optional<double> ratio_of(const Repeat& repeat, const Photographs& photographs, const Frames& again,
+                               int threads) {
+  const Size size = photographs.size;
+  constexpr int kBlock = solver::kLightBlock;
+  const int across = (size.width + kBlock - 1) / kBlock;
+  const auto down = static_cast<std::size_t>((size.height + kBlock - 1) / kBlock);
+  std::vector<solver::BlockChange> blocks(down * static_cast<std::size_t>(across));
+  std::vector<Image<float>> scratch;
+  for (int i = 0; i < resolved_threads(threads); ++i) scratch.emplace_back(Size{kBlock, kBlock}, 2);
+  parallel_for(down, threads, [&](std::size_t j, int worker) {
+    Image<float>& mine = scratch[static_cast<std::size_t>(worker)];
+    for (int i = 0; i < across; ++i) {
+      const Rect block = {i * kBlock, static_cast<int>(j) * kBlock, std::min((i + 1) * kBlock, size.width),
+                          std::min((static_cast<int>(j) + 1) * kBlock, size.height)};
+      blocks[j * static_cast<std::size_t>(across) + static_cast<std::size_t>(i)] =
+          solver::block_light(readings_of(photographs.frames, repeat.light, block, mine.plane(0)),
+                              readings_of(again, repeat.frame, block, mine.plane(1)));
+    }
+  });
+  return solver::light_ratio(std::move(blocks));
+}
+
+void ask_repeats(const Photographs& photographs, const DriftEvidence& evidence, int threads, Drift& drift) {
+  std::vector<solver::LightRepeat> used;
+  for (const Repeat& repeat : evidence.repeats) {
+    const auto ratio = drift.ratios.emplace_back(ratio_of(repeat, photographs, evidence.again, threads));
+    if (ratio && is_drift(*ratio)) used.push_back({repeat.earlier_time, repeat.later_time, *ratio});
+  }
+  if (used.empty()) return;
+  drift.source = Drift::Source::kRepeats;
+  const double rate = solver::drift_rate(used);
+  for (const double time : evidence.times) drift.measured.push_back(1 + rate * (time - evidence.first_time));
+}
+
+// Fields by the height of patches; the photographs' own where a patch has none.
+class PatchFields {
+ public:
+  explicit PatchFields(const Photographs& photographs) : photographs_(photographs) {}
+
+  /// Nothing where no light can be at this height.
+  const LightField* at(std::optional<double> height_mm) {
+    if (!height_mm) return &*photographs_.field;
+    const auto [at, is_new] = fields_.try_emplace(*height_mm);
+    if (is_new) {
+      Result<LightField> field =
+          LightField::make(photographs_.field->lights(), photographs_.camera, photographs_.size, *height_mm);
+      if (field) at->second = std::move(*field);
+    }
+    return at->second ? &*at->second : nullptr;
+  }
+
+ private:
+  const Photographs& photographs_;
+  std::map<double, std::optional<LightField>> fields_;
+};
+
+void ask_patches(const Photographs& photographs, const std::vector<WhitePatch>& patches, Drift& drift) {
+  if (patches.empty()) return;
+  PatchFields fields(photographs);
+  std::vector<std::vector<std::optional<solver::PatchLight>>> seen;
+  for (const WhitePatch& patch : patches) {
+    const LightField* field = fields.at(patch.height_mm);
+    if (field == nullptr) {
+      seen.emplace_back(photographs.count());
+    } else {
+      seen.push_back(read_patch(photographs, patch, *field));
+    }
+  }
+  std::vector<double> factors;
+  for (std::size_t k = 0; k < photographs.count(); ++k) {
+    std::vector<double> of_patches;
+    for (const auto& patch : seen) {
+      if (patch[k]) of_patches.push_back(patch[k]->factor());
+    }
+    if (of_patches.empty()) {
+      drift.unread_light = k;
+      return;
+    }
+    factors.push_back(median(std::move(of_patches)));
+  }
+  for (std::size_t p = 0; p < seen.size(); ++p) {
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+      const double ratio = seen[p][k] ? seen[p][k]->factor() / factors[k] : 1;
+      if (std::abs(ratio - 1) > kMostScatter) drift.departures.push_back({p, k, ratio});
+    }
+  }
+  drift.source = Drift::Source::kPatches;
+  drift.measured = std::move(factors);
+}
+
+}  // namespace
+
+bool is_drift(double factor) {
+  return std::abs(factor - 1) <= kMostDrift;
+}
+
+double Drift::factor(std::size_t k) const {
+  return is_drift(measured[k]) ? measured[k] : 1;
+}
+
+std::vector<std::optional<solver::PatchLight>> read_patch(const Photographs& photographs,
+                                                          const WhitePatch& patch, const LightField& field) {
+  std::vector<std::optional<solver::PatchLight>> lights(photographs.count());
+  const WhitePatch inside = solver::well_inside(patch);
+  const Rect area = solver::area_of(inside, photographs.size);
+  if (area.pixels() == 0) return lights;
+  Image<float> scratch({area.width(), area.height()});
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    const solver::PatchLight light =
+        solver::patch_light(inside, field, k, area, readings_of(photographs.frames, k, area, scratch.plane()),
+                            photographs.planes().cfa);
+    const auto& [r, g, b] = light.predicted_rgb;
+    if (light.unusable <= light.used && r + g + b > 0) lights[k] = light;
+  }
+  return lights;
+}
+
+Drift find_drift(const Photographs& photographs, const DriftEvidence& evidence, int threads) {
+  Drift drift;
+  ask_patches(photographs, evidence.patches, drift);
+  if (drift.source == Drift::Source::kNone) ask_repeats(photographs, evidence, threads, drift);
+  return drift;
+}
+
+Result<void> follow(const Drift& drift, Photographs& photographs) {
+  if (drift.source == Drift::Source::kNone) return {};
+  std::vector<double> factors;
+  for (std::size_t k = 0; k < drift.measured.size(); ++k) factors.push_back(drift.factor(k));
+  Result<LightField> field =
+      LightField::make(brightened(photographs.field->lights(), factors), photographs.camera, photographs.size,
+                       photographs.field->cloth_height_mm());
+  if (!field) return std::move(field).error();
+  photographs.field = std::move(*field);
+  return {};
+}
+
+}  // namespace weft::pipeline

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/photographs/photographs.h"
+
+#include <algorithm>
+#include <ranges>
+#include <utility>
+
+#include "core/solve/solve_record.h"
+
+namespace weft::pipeline {
+
+std::vector<View<const float>> Developed::readings(std::size_t k, Rect part, View<float> /*scratch*/) const {
+  return {rgb[k].plane(0).crop(part), rgb[k].plane(1).crop(part), rgb[k].plane(2).crop(part)};
+}
+
+void Developed::erase(std::size_t k) {
+  rgb.erase(rgb.begin() + static_cast<std::ptrdiff_t>(k));
+}
+
+Mosaics::Mosaics(std::vector<RawFrame> mosaics, std::optional<RawFrame> dark_shot,
+                 const Response& response_of_camera, Radiometry::Exposure exposure_of_all)
+    : frames(std::move(mosaics)),
+      dark(std::move(dark_shot)),
+      response(response_of_camera),
+      exposure(exposure_of_all),
+      radiometry(frames.front(), dark ? &*dark : nullptr, response, exposure),
+      noise(radiometry.noise()) {
+  measure_veils();
+}
+
+Mosaics::Mosaics(std::vector<RawFrame> others, const Mosaics& like)
+    : frames(std::move(others)),
+      response(like.response),
+      exposure(like.exposure),
+      radiometry(like.radiometry),
+      noise(like.radiometry.noise()) {
+  measure_veils();
+}
+
+Mosaics Mosaics::alike(std::vector<RawFrame> others) const {
+  return {std::move(others), *this};
+}
+
+void Mosaics::measure_veils() {
+  if (!response.veil) return;
+  for (const RawFrame& frame : frames) {
+    veils.emplace_back(*response.veil, frame.counts.size(), radiometry.cfa(),
+                       [&](Rect rows, View<float> out) { radiometry.read(frame.counts.plane(), rows, out); });
+  }
+}
+
+std::vector<View<const float>> Mosaics::readings(std::size_t k, Rect part, View<float> scratch) const {
+  const View<float> out = scratch.crop({0, 0, part.width(), part.height()});
+  radiometry.read(frames[k].counts.plane(), part, out);
+  if (!brackets.empty() && !brackets[k].empty()) add_brackets(k, part, out);
+  if (!veils.empty()) veils[k].take_off(part, out);
+  return {out};
+}
+
+// The veil is as bright in all of them.
+void Mosaics::add_brackets(std::size_t k, Rect part, View<float> out) const {
+  Image<float> others({part.width(), 1}, static_cast<int>(brackets[k].size()));
+  std::vector<NoiseModel> noise_of = {radiometry.noise()};
+  for (const Bracket& bracket : brackets[k]) noise_of.push_back(bracket.radiometry.noise());
+  for (int y = part.y0; y < part.y1; ++y) {
+    const View<float> here = out.crop({0, y - part.y0, part.width(), y - part.y0 + 1});
+    std::vector<View<const float>> exposures = {here};
+    for (std::size_t i = 0; i < brackets[k].size(); ++i) {
+      const View<float> other = others.plane(static_cast<int>(i));
+      brackets[k][i].radiometry.read(brackets[k][i].frame.counts.plane(), {part.x0, y, part.x1, y + 1},
+                                     other);
+      exposures.emplace_back(other);
+    }
+    merge_exposures(exposures, noise_of, here);
+  }
+}
+
+void Mosaics::erase(std::size_t k) {
+  frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(k));
+  if (!brackets.empty()) brackets.erase(brackets.begin() + static_cast<std::ptrdiff_t>(k));
+  if (!veils.empty()) veils.erase(veils.begin() + static_cast<std::ptrdiff_t>(k));
+}
+
+std::vector<View<const float>> readings_of(const Frames& frames, std::size_t k, Rect part,
+                                           View<float> scratch) {
+  return std::visit([&](const auto& kind) { return kind.readings(k, part, scratch); }, frames);
+}
+
+std::size_t Photographs::count() const {
+  return std::visit([](const auto& kind) { return kind.count(); }, frames);
+}
+
+Planes Photographs::planes() const {
+  return std::visit([](const auto& kind) { return kind.planes(); }, frames);
+}
+
+std::optional<NoiseModel> Photographs::noise() const {
+  return std::visit([](const auto& kind) { return kind.noise_model(); }, frames);
+}
+
+Result<void> leave_out(std::span<const std::size_t> lights, Photographs& photographs) {
+  if (lights.empty()) return {};
+  std::vector<int> kept;  // from 1
+  for (std::size_t k = 0; k < photographs.count(); ++k) {
+    if (!std::ranges::binary_search(lights, k)) kept.push_back(static_cast<int>(k) + 1);
+  }
+  Result<Lights> rest = select_lights(photographs.field->lights(), kept);
+  if (!rest) return std::move(rest).error();
+  Result<LightField> field = LightField::make(std::move(*rest), photographs.camera, photographs.size,
+                                              photographs.field->cloth_height_mm());
+  if (!field) return std::move(field).error();
+  photographs.field = std::move(*field);
+  for (const std::size_t k : std::views::reverse(lights)) {
+    std::visit([&](auto& frames) { frames.erase(k); }, photographs.frames);
+    if (photographs.parallel) std::visit([&](auto& frames) { frames.erase(k); }, *photographs.parallel);
+    if (k < photographs.leds.size())
+      photographs.leds.erase(photographs.leds.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  return {};
+}
+
+void mark_replaced(const std::vector<Photosite>& replaced, Rect band, View<std::uint16_t> status) {
+  auto site = std::lower_bound(replaced.begin(), replaced.end(), Photosite{band.y0, 0});
+  for (; site != replaced.end() && site->y < band.y1; ++site) {
+    if (site->x < band.x0 || site->x >= band.x1) continue;
+    status(site->x - band.x0, site->y - band.y0) |= kInvalidReading;
+  }
+}
+
+}  // namespace weft::pipeline
