@@ -6,11 +6,11 @@
 
 #include "app/cli/calibrate.h"
 #include "app/cli/described_options.h"
-#include "app/jobs/calibrate/camera.h"
-#include "app/jobs/calibrate/color.h"
-#include "app/jobs/calibrate/grey.h"
-#include "app/jobs/calibrate/lights.h"
-#include "app/jobs/calibrate/response.h"
+#include "calibration/run/camera.h"
+#include "calibration/run/color.h"
+#include "calibration/run/grey.h"
+#include "calibration/run/lights.h"
+#include "calibration/run/response.h"
 
 namespace weft::app {
 namespace {

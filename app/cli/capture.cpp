@@ -13,8 +13,8 @@
 #include "app/cli/set_capture.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/sets/photograph_set.h"
 #include "app/server/rig/rig_lock.h"
+#include "calibration/guide/photograph_set.h"
 
 namespace weft::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
-#include "app/jobs/rig_plan_request.h"
+#include "calibration/guide/rig_plan_request.h"
 #include "core/base/files.h"
 
 namespace weft::app {

@@ -13,7 +13,7 @@
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/last_check.h"
+#include "calibration/run/last_check.h"
 #include "capture/rig.h"
 #include "core/base/files.h"
 #include "core/describe/field_check.h"

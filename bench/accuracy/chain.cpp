@@ -8,12 +8,12 @@
 #include <map>
 #include <utility>
 
-#include "app/jobs/calibrate/camera.h"
-#include "app/jobs/calibrate/lights.h"
-#include "app/jobs/calibrate/response.h"
 #include "app/jobs/compare.h"
 #include "bench/accuracy/scenes.h"
 #include "bench/accuracy/score.h"
+#include "calibration/run/camera.h"
+#include "calibration/run/lights.h"
+#include "calibration/run/response.h"
 #include "core/base/files.h"
 #include "core/base/statistics.h"
 #include "core/base/temporary_folder.h"

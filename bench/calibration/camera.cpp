@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/calibrate/camera.h"
-#include "app/jobs/calibrate/response.h"
 #include "bench/base/rig.h"
 #include "bench/oracles/board_views.h"
 #include "calibration/camera/lens.h"
 #include "calibration/response/superposition.h"
+#include "calibration/run/camera.h"
+#include "calibration/run/response.h"
 #include "capture/raw/decode.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"

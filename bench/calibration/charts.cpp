@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/calibrate/color.h"
 #include "bench/oracles/board_views.h"
 #include "bench/oracles/grey_oracle.h"
 #include "bench/oracles/paper_oracle.h"
@@ -22,6 +21,7 @@
 #include "calibration/lights/physical.h"
 #include "calibration/lights/sheet_blocks.h"
 #include "calibration/response/neutral_scale.h"
+#include "calibration/run/color.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
 #include "core/base/temporary_folder.h"

@@ -9,12 +9,12 @@
 #include <map>
 #include <vector>
 
-#include "app/jobs/calibrate/camera.h"
-#include "app/jobs/calibrate/check.h"
-#include "app/jobs/calibrate/color.h"
-#include "app/jobs/calibrate/lights.h"
-#include "app/jobs/calibrate/response.h"
 #include "calibration/color/color_fit.h"
+#include "calibration/run/camera.h"
+#include "calibration/run/check.h"
+#include "calibration/run/color.h"
+#include "calibration/run/lights.h"
+#include "calibration/run/response.h"
 #include "core/base/temporary_folder.h"
 #include "core/image_io/image_io.h"
 #include "simulator/captures.h"

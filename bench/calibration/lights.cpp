@@ -12,12 +12,12 @@
 #include <optional>
 #include <set>
 
-#include "app/jobs/calibrate/lights.h"
 #include "bench/oracles/paper_oracle.h"
 #include "bench/oracles/rig.h"
 #include "calibration/lights/per_pixel.h"
 #include "calibration/lights/physical.h"
 #include "calibration/lights/seed_iteration.h"
+#include "calibration/run/lights.h"
 #include "capture/raw/decode.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"

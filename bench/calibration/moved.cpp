@@ -244,7 +244,7 @@ Result<void> read(const Scene& scene, Rect area, int leds, LitPlace& place) {
   return {};
 }
 
-/// Patches by what tags say of camera and table, as app/jobs/calibrate/rig_evidence.h looks for them.
+/// Patches by what tags say of camera and table, as calibration/run/rig_evidence.h looks for them.
 Result<RigEvidence> evidence_of(const Scene& now, const CameraModel& camera, const Calibration& calibration,
                                 Draws& draws) {
   auto tags = tags_of(now, camera);

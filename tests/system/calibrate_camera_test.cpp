@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <string>
 
-#include "app/jobs/calibrate/camera.h"
 #include "app/jobs/rectify.h"
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
+#include "calibration/run/camera.h"
 #include "capture/raw/decode.h"
 #include "core/image_io/image_io.h"
 #include "simulator/camera/dng_writer.h"

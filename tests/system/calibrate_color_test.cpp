@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/calibrate/color.h"
+#include "calibration/run/color.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

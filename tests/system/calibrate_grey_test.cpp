@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "app/jobs/calibrate/grey.h"
+#include "calibration/run/grey.h"
 #include "core/base/files.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/calibrate/lights.h"
+#include "calibration/run/lights.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,10 +11,10 @@
 #include <functional>
 #include <vector>
 
-#include "app/jobs/calibrate/check.h"
-#include "app/jobs/calibrate/sheet_captures.h"
-#include "app/jobs/calibrate/sheet_files.h"
 #include "bench/oracles/paper_oracle.h"
+#include "calibration/run/check.h"
+#include "calibration/run/sheet_captures.h"
+#include "calibration/run/sheet_files.h"
 #include "capture/rig.h"
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"

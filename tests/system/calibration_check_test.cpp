@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/jobs/calibrate/check.h"
-#include "app/jobs/calibrate/check_result.h"
-#include "app/jobs/calibrate/history.h"
-#include "app/jobs/calibrate/patches.h"
-#include "app/jobs/calibrate/rig_evidence.h"
-#include "app/jobs/calibrate/update.h"
 #include "calibration/camera/pose.h"
+#include "calibration/run/check.h"
+#include "calibration/run/check_result.h"
+#include "calibration/run/history.h"
+#include "calibration/run/patches.h"
+#include "calibration/run/rig_evidence.h"
+#include "calibration/run/update.h"
 #include "core/base/files.h"
 #include "simulator/captures.h"
 #include "simulator/captures_layout.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/calibrate/report.h"
+#include "calibration/run/report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 
 #include "app/jobs/maps/map_work.h"
 #include "app/jobs/maps/surface_files.h"
-#include "app/jobs/planned_cloth.h"
+#include "calibration/guide/planned_cloth.h"
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "core/solve/solve_record.h"

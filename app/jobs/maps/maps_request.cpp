@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/planned_cloth.h"
+#include "calibration/guide/planned_cloth.h"
 #include "core/describe/described_fields.h"
 
 namespace weft::app {

@@ -4,13 +4,13 @@
 #include <string>
 #include <utility>
 
-#include "app/jobs/calibrate/accept.h"
-#include "app/jobs/calibrate/history.h"
-#include "app/jobs/sets/response_series.h"
 #include "app/server/api/api.h"
 #include "app/server/api/job_places.h"
 #include "app/server/api/requests.h"
 #include "app/server/api/scan_body.h"
+#include "calibration/guide/response_series.h"
+#include "calibration/run/accept.h"
+#include "calibration/run/history.h"
 #include "core/base/files.h"
 #include "core/toml/field_toml.h"
 

@@ -4,10 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/jobs/calibrate/board_photographs.h"
-#include "app/jobs/calibrate/chart_pictures.h"
-#include "app/jobs/calibrate/sheet_files.h"
-#include "app/jobs/calibrate/walk.h"
 #include "app/server/api/api.h"
 #include "app/server/api/batch_place.h"
 #include "app/server/api/job_body.h"
@@ -15,6 +11,10 @@
 #include "app/server/api/library_materials.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_query.h"
+#include "calibration/guide/walk.h"
+#include "calibration/run/board_photographs.h"
+#include "calibration/run/chart_pictures.h"
+#include "calibration/run/sheet_files.h"
 #include "core/base/files.h"
 #include "core/base/number.h"
 #include "core/describe/field_json.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/sets/photograph_set.h"
 #include "app/server/api/body_fields.h"
+#include "calibration/guide/photograph_set.h"
 #include "core/base/json_document.h"
 #include "core/describe/fields.h"
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <utility>
 
-#include "app/jobs/last_check.h"
 #include "app/server/api/api.h"
 #include "app/server/api/scan_bill.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_choice.h"
+#include "calibration/run/last_check.h"
 #include "core/base/files.h"
 #include "core/rig/calibration.h"
 

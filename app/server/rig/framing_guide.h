@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "app/jobs/sets/framing.h"
+#include "calibration/guide/framing.h"
 #include "capture/rig.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/jobs/sets/set_work.h"
+#include "calibration/guide/set_work.h"
 #include "core/base/files.h"
 #include "core/describe/error_json.h"
 #include "core/rig/calibration.h"

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "app/jobs/sets/photograph_set.h"
-#include "app/jobs/sets/set_guide.h"
 #include "app/server/http/event_log.h"
 #include "app/server/rig/rig_keeper.h"
+#include "calibration/guide/photograph_set.h"
+#include "calibration/guide/set_guide.h"
 #include "capture/rig.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"

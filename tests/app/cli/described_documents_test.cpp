@@ -10,10 +10,10 @@
 
 #include "app/jobs/export_facts.h"
 #include "app/jobs/import/photographs_import.h"
-#include "app/jobs/last_check.h"
 #include "app/jobs/maps/map_set_facts.h"
 #include "app/jobs/rectify.h"
-#include "app/jobs/sets/photograph_set.h"
+#include "calibration/guide/photograph_set.h"
+#include "calibration/run/last_check.h"
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "solve/report/reflectance_facts.h"

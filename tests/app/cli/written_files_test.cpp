@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/calibrate/board_photographs.h"
-#include "app/jobs/calibrate/chart_pictures.h"
-#include "app/jobs/calibrate/check.h"
-#include "app/jobs/calibrate/scale_file.h"
-#include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/import/description.h"
 #include "app/jobs/maps/recipe.h"
 #include "app/jobs/material/material_file.h"
+#include "calibration/run/board_photographs.h"
+#include "calibration/run/chart_pictures.h"
+#include "calibration/run/check.h"
+#include "calibration/run/scale_file.h"
+#include "calibration/run/sheet_files.h"
 #include "capture/camera/camera_profile.h"
 #include "capture/rig.h"
 #include "core/base/files.h"

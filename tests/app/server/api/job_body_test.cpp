@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/planned_cloth.h"
+#include "calibration/guide/planned_cloth.h"
 #include "core/base/files.h"
 #include "core/base/temporary_folder.h"
 

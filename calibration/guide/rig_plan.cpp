@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/guide/rig_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "capture/rig.h"
+#include "core/rig/calibration.h"
+#include "core/rig/camera.h"
+#include "report/hemisphere.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using solver::LedPlace;
+using solver::LightPlan;
+using solver::LightSet;
+using solver::PlannedSigma;
+using solver::TriedPlace;
+
+// From black to white of a raw file of 14 bits; the calibration says electrons a count.
+constexpr double kCountsToWhite = 16000;
+// Where no calibration says where the camera is, and what it sees.
+constexpr Vec3 kPlanCamera_mm = {0, 0, 600};
+constexpr double kHalfWidth_mm = 90, kHalfHeight_mm = 60;
+// Where the places stand in the frame: a tenth of it from its edges.
+constexpr std::array<double, 3> kFrameShares = {0.5, 0.1, 0.9};
+// Films before lights and lens let a quarter of the light pass.
+constexpr double kFilmExposures = 4, kPlanExposure_s = 0.5;
+constexpr double kNearestLed_mm = 10;
+constexpr std::size_t kBoardLeds = 10;
+
+// What a file says of a rig.
+struct KnownRig {
+  std::string name, where;
+  NearLights lights;
+  std::optional<Calibration> calibration;
+  double cloth_height_mm = 0, exposure_s = kPlanExposure_s;
+};
+
+Error no_places(std::string where, std::string why) {
+  return {ErrorKind::kBadData, "no lights to plan with", std::move(where), std::move(why),
+          "write the LEDs' places into the rig file as [[led]], or calibrate its lights"};
+}
+
+Result<KnownRig> calibrated_rig(const fs::path& folder) {
+  Result<Calibration> calibration = read_calibration(folder);
+  if (!calibration) return std::move(calibration).error();
+  if (!calibration->lights) return no_places(folder.string(), "the calibration is not of lights");
+  const auto* near = std::get_if<NearLights>(&*calibration->lights);
+  if (!near) return no_places(folder.string(), "its lights are distant, which have directions and no places");
+  KnownRig rig = {
+      .name = calibration->subject.rig, .where = folder.string(), .lights = *near, .calibration = {}};
+  rig.calibration = std::move(*calibration);
+  return rig;
+}
+
+Result<KnownRig> known_rig(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return calibrated_rig(path);
+  const Result<capture::Rig> file = capture::read_rig(path);
+  if (!file) return file.error();
+  KnownRig rig = {.name = file->name, .where = path.string(), .lights = {}, .calibration = {}};
+  if (!file->scan.calibration.empty()) {
+    Result<KnownRig> calibrated = calibrated_rig(file->scan.calibration);
+    if (!calibrated) return std::move(calibrated).error();
+    rig = std::move(*calibrated);
+  } else if (file->lights) {
+    rig.lights = *file->lights;
+  } else {
+    return no_places(path.string(), "the rig file has no [[led]] and names no calibration");
+  }
+  rig.cloth_height_mm = file->scan.cloth_height_mm;
+  if (file->scan.exposure_us) rig.exposure_s = 1e-6 * *file->scan.exposure_us;
+  return rig;
+}
+
+// Nine places over the frame, its middle first.
+std::vector<Vec3> frame_places(const KnownRig& rig) {
+  std::vector<Vec3> places;
+  for (const double v : kFrameShares) {
+    for (const double u : kFrameShares) {
+      if (!rig.calibration || !rig.calibration->camera) {
+        places.push_back({(2 * u - 1) * kHalfWidth_mm, (2 * v - 1) * kHalfHeight_mm, rig.cloth_height_mm});
+        continue;
+      }
+      const CameraModel& camera = *rig.calibration->camera;
+      places.push_back(
+          point_on_plane(camera, u * camera.size.width, v * camera.size.height, rig.cloth_height_mm));
+    }
+  }
+  return places;
+}
+
+Result<void> check_places(const solver::PlannedRig& rig, const std::string& where) {
+  for (const Vec3 place : rig.places_mm) {
+    if (!(length(place) < 1e5)) return no_places(where, "the camera does not look at the table");
+  }
+  for (std::size_t k = 0; k < rig.leds.size(); ++k) {
+    for (const Vec3 place : rig.places_mm) {
+      const double distance = length(rig.leds[k].position_mm - place);
+      if (!(distance > kNearestLed_mm && distance < 1e5))
+        return no_places(where, fmt::format("LED {} is {:.3g} mm from the cloth", k + 1, distance));
+    }
+  }
+  return {};
+}
+
+Result<solver::PlannedRig> planned_of(const KnownRig& rig) {
+  solver::PlannedRig planned;
+  planned.leds = rig.lights.leds;
+  planned.camera_mm = kPlanCamera_mm;
+  planned.places_mm = frame_places(rig);
+  if (rig.calibration && rig.calibration->camera) planned.camera_mm = centre_of(*rig.calibration->camera);
+  if (planned.leds.empty()) return no_places(rig.where, "it has no LED");
+  if (Result<void> ok = check_places(planned, rig.where); !ok) return std::move(ok).error();
+  if (rig.calibration && rig.calibration->response) {
+    const Response& response = *rig.calibration->response;
+    planned.full_well_electrons = kCountsToWhite * response.electrons_per_count;
+    planned.read_noise_electrons = response.read_noise_counts * response.electrons_per_count;
+  }
+  const Vec3 middle = planned.places_mm.front();
+  planned.led_covariance = solver::typical_led_covariance(planned.leds, middle);
+  if (rig.calibration && rig.calibration->light_covariance) {
+    Result<std::vector<double>> own =
+        solver::led_covariance_of(planned.leds, middle, *rig.calibration->light_covariance);
+    if (!own) return std::move(own).error();
+    planned.led_covariance = std::move(*own);
+  }
+  return planned;
+}
+
+std::string place_words(LedPlace place) {
+  return fmt::format("{:.0f} degrees from the camera, azimuth {:.0f}", place.from_camera_deg,
+                     place.azimuth_deg);
+}
+
+// Makes the rows of a plan.
+class Rows {
+ public:
+  Rows(const LightPlan& plan, const KnownRig& rig, const RigPlanOptions& options)
+      : plan_(plan), rig_(rig), options_(options), leds_(static_cast<int>(rig.lights.leds.size())) {}
+
+  std::vector<RigPlanRow> take() { return std::move(rows_); }
+
+  void as_it_is() {
+    add({.name = "as-it-is", .what = "the LEDs as they are", .sigma = {}, .least = {}}, plan_.as_it_is());
+  }
+
+  void one_more(const TriedPlace& best) {
+    add(with_place("one-more", "one more LED, " + place_words(best.place), best.place, 1),
+        lit_with(best.place, false));
+  }
+
+  void near_camera(LedPlace place) {
+    add(with_place("near-camera", "one more LED, " + place_words(place), place, 1), lit_with(place, false));
+  }
+
+  void polarisers() {
+    RigPlanRow row = {
+        .name = "polarisers", .what = "crossed and parallel polarisers", .sigma = {}, .least = {}};
+    row.extra_shots = leds_;
+    LightSet set = plan_.as_it_is();
+    set.has_polarisers = true;
+    add(std::move(row), set);
+  }
+
+  void polarisers_near_camera(LedPlace place) {
+    add(with_place("polarisers-near-camera", "polarisers and a LED, " + place_words(place), place, leds_ + 2),
+        lit_with(place, true));
+  }
+
+  void moved(const TriedPlace& best) {
+    RigPlanRow row = with_place(
+        "moved", fmt::format("LED {} moved to {}", *best.moved + 1, place_words(best.place)), best.place, 0);
+    row.moved = *best.moved + 1;
+    LightSet set = lit_with(best.place, false);
+    set.leds.erase(set.leds.begin() + static_cast<std::ptrdiff_t>(*best.moved));
+    add(std::move(row), set);
+  }
+
+ private:
+  static RigPlanRow with_place(const char* name, std::string what, LedPlace place, int extra_shots) {
+    RigPlanRow row = {.name = name, .what = std::move(what), .sigma = {}, .least = {}, .place = place};
+    row.extra_shots = extra_shots;
+    return row;
+  }
+
+  LightSet lit_with(LedPlace place, bool has_polarisers) const {
+    LightSet set = plan_.as_it_is();
+    set.added = solver::led_at(plan_.rig(), place);
+    set.has_polarisers = has_polarisers;
+    return set;
+  }
+
+  void add(RigPlanRow row, LightSet set) {
+    row.sigma = plan_.sigma_of(set);
+    row.extra_seconds = row.extra_shots * options_.seconds_a_shot;
+    if (set.has_polarisers)
+      row.extra_seconds += (leds_ + row.extra_shots) * (kFilmExposures - 1) * rig_.exposure_s;
+    row.degrees_won = rows_.empty() ? 0 : rows_.front().sigma.normal_deg - row.sigma.normal_deg;
+    set.errors = solver::RigErrors::kFitted;
+    row.least = plan_.sigma_of(set);
+    rows_.push_back(std::move(row));
+  }
+
+  const LightPlan& plan_;
+  const KnownRig& rig_;
+  const RigPlanOptions& options_;
+  int leds_;
+  std::vector<RigPlanRow> rows_;
+};
+
+// The best of the places next to the camera.
+std::optional<LedPlace> beside_camera(std::vector<TriedPlace> tried, const RigPlanOptions& options) {
+  std::erase_if(
+      tried, [](const TriedPlace& each) { return each.place.from_camera_deg > solver::kNearestPlace_deg; });
+  if (tried.empty()) return {};
+  const auto badness_at = [&](const TriedPlace& each) {
+    return solver::badness(each.sigma, options.cloth.cloth.lobe, options.aim);
+  };
+  return std::ranges::min_element(tried, {}, badness_at)->place;
+}
+
+// What costs least and makes it observable.
+const RigPlanRow* what_shows(const std::vector<RigPlanRow>& rows) {
+  const RigPlanRow* least = nullptr;
+  for (const RigPlanRow& row : rows) {
+    if (row.sigma.is_observable && (!least || row.extra_shots < least->extra_shots)) least = &row;
+  }
+  return least;
+}
+
+std::string plan_verdict(const RigPlan& plan) {
+  const solver::Lobe& lobe = plan.cloth.cloth.lobe;
+  if (!lobe.shines()) return "a matt cloth has no lobe that could be observed";
+  const bool is_pile = lobe.family == solver::LobeFamily::kCloth;
+  const std::string are = is_pile ? "the sheen is" : "roughness and f0 are";
+  if (plan.rows.front().sigma.is_observable) return are + " observable with the LEDs as they are";
+  const RigPlanRow* shown = what_shows(plan.rows);
+  if (!shown) return are + " observable by none of these";
+  return fmt::format("{} not observable with the LEDs as they are; what makes {} so: {}", are,
+                     is_pile ? "it" : "them", shown->what);
+}
+
+std::vector<std::string> plan_notes(const RigPlan& plan) {
+  std::vector<std::string> notes;
+  const PlannedSigma& today = plan.rows.front().sigma;
+  if (!today.is_observable && today.correlation < solver::kTailOnly)
+    notes.push_back("to these LEDs a stronger lobe and a rougher one look alike");
+  if (today.unsolved > 0.005)
+    notes.push_back(fmt::format("{:.0f} percent of the pixels have no normal to {:g} degrees",
+                                100 * today.unsolved, solver::kWorstNormal_deg));
+  if (plan.planned.leds.size() >= kBoardLeds)
+    notes.push_back("the board lights ten LEDs: one more takes the place of one, or a second board");
+  if (!plan.is_calibrated)
+    notes.push_back(
+        "no calibration says how far the LEDs are off; they count as known to 1 mm and half a percent");
+  return notes;
+}
+
+}  // namespace
+
+Result<RigPlan> plan_rig(const RigPlanOptions& options, const JobContext& context) {
+  const Result<KnownRig> rig = known_rig(options.rig);
+  if (!rig) return rig.error();
+  Result<solver::PlannedRig> planned = planned_of(*rig);
+  if (!planned) return std::move(planned).error();
+  const LightPlan plan(*planned, options.cloth.cloth);
+  RigPlan result;
+  result.rig = rig->name.empty() ? rig->where : rig->name;
+  result.planned = *planned;
+  result.cloth = options.cloth;
+  result.is_calibrated = rig->calibration && rig->calibration->light_covariance;
+  const std::vector<LedPlace> places = solver::free_places(*planned);
+
+  context.progress("places", 0);
+  Result<std::vector<TriedPlace>> tried = solver::try_places(plan, plan.as_it_is(), places, context);
+  if (!tried) return std::move(tried).error();
+  result.tried = std::move(*tried);
+  const auto best = solver::best_place(plan, plan.as_it_is(), result.tried, options.aim, context);
+  if (!best) return best.error();
+  context.progress("places", 0.5);
+  const auto moved = solver::best_move(plan, places, options.aim, context);
+  if (!moved) return moved.error();
+  context.progress("places", 1);
+
+  const std::optional<LedPlace> beside = beside_camera(result.tried, options);
+  Rows rows(plan, *rig, options);
+  rows.as_it_is();
+  if (*best) rows.one_more(**best);
+  if (beside) rows.near_camera(*beside);
+  rows.polarisers();
+  if (beside) rows.polarisers_near_camera(*beside);
+  if (*moved) rows.moved(**moved);
+  result.rows = rows.take();
+  result.verdict = plan_verdict(result);
+  result.notes = plan_notes(result);
+  return result;
+}
+
+namespace {
+
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+const char* strength_key(const solver::Lobe& lobe) {
+  return lobe.family == solver::LobeFamily::kCloth ? "sheen" : "f0";
+}
+
+Json sigma_json(const PlannedSigma& sigma, const solver::Lobe& lobe) {
+  Json json = {{"normal_deg", number_or_null(sigma.normal_deg)}};
+  if (!lobe.shines()) return json;
+  json["alpha"] = number_or_null(sigma.alpha);
+  json[strength_key(lobe)] = number_or_null(sigma.f0);
+  if (lobe.family == solver::LobeFamily::kAnisotropicGgx) {
+    json["alpha_along"] = number_or_null(sigma.alpha_along);
+    json["axis_deg"] = number_or_null(sigma.axis_deg);
+  }
+  json["correlation"] = sigma.correlation;
+  return json;
+}
+
+Json place_json(LedPlace place) {
+  return {{"from_camera_deg", place.from_camera_deg}, {"azimuth_deg", place.azimuth_deg}};
+}
+
+Json row_json(const RigPlanRow& row, const RigPlan& plan) {
+  const solver::Lobe& lobe = plan.cloth.cloth.lobe;
+  Json json = {{"name", row.name},
+               {"what", row.what},
+               {"sigma", sigma_json(row.sigma, lobe)},
+               {"least_sigma", sigma_json(row.least, lobe)},
+               {"observable", row.sigma.is_observable},
+               {"unsolved_share", row.sigma.unsolved},
+               {"extra_shots", row.extra_shots},
+               {"extra_seconds", row.extra_seconds},
+               {"degrees_won", number_or_null(row.degrees_won)}};
+  if (row.moved) json["led"] = *row.moved;
+  if (!row.place) return json;
+  const Vec3 at = solver::led_at(plan.planned, *row.place).position_mm;
+  json["place"] = place_json(*row.place);
+  json["position_mm"] = {at.x, at.y, at.z};
+  return json;
+}
+
+Json cloth_json(const NamedCloth& named) {
+  const solver::PlannedCloth& cloth = named.cloth;
+  Json json = {{"name", named.name},
+               {"family", name_of(cloth.lobe.family)},
+               {"albedo", cloth.albedo},
+               {"relief_deg", cloth.relief_deg},
+               {"pixels", cloth.pixels}};
+  if (!cloth.lobe.shines()) return json;
+  json["alpha"] = cloth.lobe.alpha;
+  if (cloth.lobe.family == solver::LobeFamily::kAnisotropicGgx) {
+    json["alpha_along"] = cloth.lobe.alpha * cloth.lobe.along;
+    json["weft_share"] = cloth.weft_share;
+  }
+  if (cloth.lobe.family == solver::LobeFamily::kTwoGgx) {
+    json["alpha_broad"] = cloth.lobe.broad;
+    json["broad_share"] = cloth.lobe.broad_share;
+  }
+  json[strength_key(cloth.lobe)] = cloth.lobe.f0;
+  return json;
+}
+
+}  // namespace
+
+Json json_of(const RigPlan& plan) {
+  Json rows = Json::array();
+  for (const RigPlanRow& row : plan.rows) rows.push_back(row_json(row, plan));
+  return {{"rig", plan.rig},
+          {"leds", plan.planned.leds.size()},
+          {"cloth", cloth_json(plan.cloth)},
+          {"rig_errors", plan.is_calibrated ? "calibration" : "typical"},
+          {"full_well_electrons", plan.planned.full_well_electrons},
+          {"read_noise_electrons", plan.planned.read_noise_electrons},
+          {"observable", plan.rows.front().sigma.is_observable},
+          {"verdict", plan.verdict},
+          {"rows", std::move(rows)},
+          {"notes", plan.notes}};
+}
+
+std::string picture_of(const RigPlan& plan) {
+  const double today = plan.rows.front().sigma.normal_deg;
+  const bool is_told = std::isfinite(today);
+  const auto shown = [&](const PlannedSigma& sigma) {
+    return is_told ? today - sigma.normal_deg : sigma.normal_deg;
+  };
+  report::Hemisphere drawing;
+  drawing.title = fmt::format("{}: one more LED for {}", plan.rig, plan.cloth.name);
+  drawing.unit = is_told ? "degrees of the normal won" : "degrees, sigma of the normal";
+  for (const TriedPlace& each : plan.tried)
+    drawing.values.push_back({each.place.from_camera_deg, each.place.azimuth_deg, shown(each.sigma)});
+  for (const NearLight& led : plan.planned.leds) {
+    const LedPlace place = solver::place_of(plan.planned, led.position_mm);
+    drawing.leds.push_back({place.from_camera_deg, place.azimuth_deg, 0});
+  }
+  for (const RigPlanRow& row : plan.rows) {
+    if (row.name == "one-more")
+      drawing.best = {row.place->from_camera_deg, row.place->azimuth_deg, shown(row.sigma)};
+  }
+  return report::hemisphere_svg(drawing);
+}
+
+}  // namespace weft::app
