@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/compare.h"
+#include "material/read/compare.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -10,9 +10,9 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/maps/maps_request.h"
-#include "app/jobs/maps/price.h"
-#include "app/jobs/maps/session_sets.h"
+#include "material/run/maps_request.h"
+#include "material/run/price.h"
+#include "material/run/session_sets.h"
 
 namespace weft::app {
 namespace {

@@ -11,13 +11,13 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/maps/session_sets.h"
-#include "app/jobs/material/build.h"
-#include "app/jobs/material/build_request.h"
-#include "app/jobs/material/map_set.h"
-#include "app/jobs/material/new_material.h"
-#include "app/jobs/material/watch.h"
 #include "core/solve/verdict.h"
+#include "material/assets/build.h"
+#include "material/assets/build_request.h"
+#include "material/assets/map_set.h"
+#include "material/assets/new_material.h"
+#include "material/assets/watch.h"
+#include "material/run/session_sets.h"
 
 namespace weft::app {
 namespace {

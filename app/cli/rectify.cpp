@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/rectify.h"
+#include "material/run/rectify.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/maps/session_sets.h"
+#include "material/run/session_sets.h"
 
 namespace weft::app {
 namespace {

@@ -8,7 +8,6 @@
 #include <map>
 #include <utility>
 
-#include "app/jobs/compare.h"
 #include "bench/accuracy/scenes.h"
 #include "bench/accuracy/score.h"
 #include "calibration/run/camera.h"
@@ -18,6 +17,7 @@
 #include "core/base/statistics.h"
 #include "core/base/temporary_folder.h"
 #include "core/image_io/image_io.h"
+#include "material/read/compare.h"
 #include "simulator/captures.h"
 #include "simulator/simulate.h"
 #include "solve/run/solve.h"

@@ -10,11 +10,11 @@
 #include <numeric>
 #include <utility>
 
-#include "app/jobs/compare.h"
 #include "bench/accuracy/score.h"
 #include "bench/base/solved_maps.h"
 #include "core/base/parallel.h"
 #include "core/image_io/image_io.h"
+#include "material/read/compare.h"
 #include "simulator/sampling/random.h"
 #include "solve/input/photo_input.h"
 #include "solve/levels/frame.h"

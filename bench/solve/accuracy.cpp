@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/compare.h"
 #include "bench/base/bound.h"
 #include "bench/base/rig.h"
 #include "bench/base/solved_maps.h"
 #include "core/base/temporary_folder.h"
 #include "core/base/vec.h"
 #include "core/image_io/image_io.h"
+#include "material/read/compare.h"
 #include "simulator/camera/movement.h"
 #include "simulator/effects/random_key.h"
 #include "simulator/reflectance/presets.h"

@@ -11,11 +11,11 @@
 #include <sstream>
 #include <string>
 
-#include "app/jobs/compare.h"
 #include "core/base/files.h"
 #include "core/base/temporary_folder.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
+#include "material/read/compare.h"
 #include "simulator/scene/resolution.h"
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"

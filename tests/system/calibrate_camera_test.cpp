@@ -9,12 +9,12 @@
 #include <filesystem>
 #include <string>
 
-#include "app/jobs/rectify.h"
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
 #include "calibration/run/camera.h"
 #include "capture/raw/decode.h"
 #include "core/image_io/image_io.h"
+#include "material/run/rectify.h"
 #include "simulator/camera/dng_writer.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"

@@ -15,13 +15,13 @@
 #include <vector>
 
 #include "app/jobs/export/preset_files.h"
-#include "app/jobs/maps/maps.h"
 #include "core/base/files.h"
 #include "core/image/color_spaces.h"
 #include "core/image_io/image_io.h"
 #include "exchange/blocks/dds.h"
 #include "exchange/blocks/decode.h"
 #include "exchange/presets/preset.h"
+#include "material/run/maps.h"
 #include "solve/run/solve.h"
 #include "tests/exchange/export_checks.h"
 #include "tests/system/program.h"

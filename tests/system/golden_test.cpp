@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "app/jobs/compare.h"
 #include "core/image_io/image_io.h"
+#include "material/read/compare.h"
 #include "solve/run/solve.h"
 #include "tests/simd_targets.h"
 #include "tests/system/samples.h"

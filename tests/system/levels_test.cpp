@@ -2,8 +2,8 @@
 // What the levels promise each other, on whole sessions.
 #include <gtest/gtest.h>
 
-#include "app/jobs/compare.h"
 #include "core/image_io/image_io.h"
+#include "material/read/compare.h"
 #include "solve/run/solve.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

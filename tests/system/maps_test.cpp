@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sets of maps of a small session, by the job and by the program.
-#include "app/jobs/maps/maps.h"
+#include "material/run/maps.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/maps/surface_files.h"
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "core/rig/session.h"
+#include "material/run/surface_files.h"
 #include "solve/files/gloss_maps.h"
 #include "solve/run/solve.h"
 #include "tests/material/weave.h"

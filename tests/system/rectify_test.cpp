@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Maps of a small session on a square grid of its table.
-#include "app/jobs/rectify.h"
+#include "material/run/rectify.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

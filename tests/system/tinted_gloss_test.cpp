@@ -8,10 +8,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "app/jobs/maps/maps.h"
 #include "core/base/json_document.h"
 #include "core/image_io/image_io.h"
 #include "core/solve/solve_record.h"
+#include "material/run/maps.h"
 #include "solve/run/solve.h"
 #include "tests/system/session_test.h"
 

@@ -8,12 +8,12 @@
 
 #include "app/jobs/batch/lean.h"
 #include "app/jobs/export/export.h"
-#include "app/jobs/maps/maps.h"
 #include "batch/outcome.h"
 #include "core/base/files.h"
 #include "core/base/temporary_folder.h"
 #include "core/rig/session.h"
 #include "library/session_files.h"
+#include "material/run/maps.h"
 #include "solve/run/solve.h"
 
 namespace weft::app {

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/compare.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
 #include "core/base/vec.h"
@@ -21,6 +20,7 @@
 #include "core/solve/solve.h"
 #include "core/solve/solve_record.h"
 #include "core/solve/status_blend.h"
+#include "material/read/compare.h"
 
 namespace weft::app {
 namespace {

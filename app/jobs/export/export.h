@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "app/jobs/export/map_folder.h"
-#include "app/jobs/export_facts.h"
 #include "core/base/job.h"
 #include "core/base/result.h"
+#include "exchange/presets/export_facts.h"
 #include "exchange/presets/preset.h"
 
 namespace weft::app {

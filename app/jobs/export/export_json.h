@@ -6,8 +6,8 @@
 #include "app/jobs/export/encode_files.h"
 #include "app/jobs/export/map_folder.h"
 #include "app/jobs/export/plan.h"
-#include "app/jobs/export_facts.h"
 #include "core/base/json_document.h"
+#include "exchange/presets/export_facts.h"
 
 namespace weft::app {
 

@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "app/jobs/export/textured.h"
-#include "app/jobs/material/runtime.h"
 #include "core/base/files.h"
 #include "core/base/text.h"
 #include "core/image_io/image_io.h"
 #include "exchange/materialx/materialx.h"
+#include "material/assets/runtime.h"
 
 namespace weft::app {
 namespace {

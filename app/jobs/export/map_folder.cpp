@@ -8,8 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "app/jobs/maps/maps.h"
-#include "app/jobs/maps/session_sets.h"
 #include "core/base/files.h"
 #include "core/base/product.h"
 #include "core/base/text.h"
@@ -17,6 +15,8 @@
 #include "core/rig/albedo_scale.h"
 #include "core/solve/solve.h"
 #include "exchange/document.h"
+#include "material/run/maps.h"
+#include "material/run/session_sets.h"
 
 namespace weft::app {
 namespace {

@@ -8,12 +8,12 @@
 
 #include "app/jobs/export/preset_files.h"
 #include "app/jobs/export/price.h"
-#include "app/jobs/maps/map_work.h"
-#include "app/jobs/material/build.h"
-#include "app/jobs/material/material_place.h"
 #include "core/base/files.h"
 #include "core/base/text.h"
 #include "exchange/presets/channels.h"
+#include "material/assets/build.h"
+#include "material/assets/material_place.h"
+#include "material/run/map_work.h"
 
 namespace weft::app {
 namespace {

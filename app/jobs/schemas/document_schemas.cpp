@@ -4,10 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/jobs/batch/merge_batch.h"
-#include "app/jobs/export_facts.h"
 #include "app/jobs/import/photographs_import.h"
-#include "app/jobs/maps/map_set_facts.h"
-#include "app/jobs/rectify.h"
 #include "batch/outcome.h"
 #include "batch/plan.h"
 #include "calibration/guide/photograph_set.h"
@@ -17,6 +14,9 @@
 #include "core/rig/calibration_parts.h"
 #include "core/rig/session.h"
 #include "core/solve/solve.h"
+#include "exchange/presets/export_facts.h"
+#include "material/run/map_set_facts.h"
+#include "material/run/rectify.h"
 #include "solve/report/reflectance_facts.h"
 #include "solve/report/report_facts.h"
 

@@ -9,9 +9,6 @@
 #include "app/jobs/batch/plan_batch.h"
 #include "app/jobs/batch/run_batch.h"
 #include "app/jobs/export/export_request.h"
-#include "app/jobs/maps/maps_request.h"
-#include "app/jobs/material/build_request.h"
-#include "app/jobs/rectify.h"
 #include "app/jobs/torture_request.h"
 #include "app/server/api/batch_body.h"
 #include "app/server/api/job_arguments.h"
@@ -26,6 +23,9 @@
 #include "calibration/run/response.h"
 #include "calibration/run/update.h"
 #include "capture/scan/copy_request.h"
+#include "material/assets/build_request.h"
+#include "material/run/maps_request.h"
+#include "material/run/rectify.h"
 #include "solve/run/solve_request.h"
 
 namespace weft::app {

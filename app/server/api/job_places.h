@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "app/jobs/material/material_place.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
+#include "material/assets/material_place.h"
 
 namespace weft::app {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/jobs/material/build.h"
-#include "app/jobs/material/resolve.h"
+#include "material/assets/build.h"
+#include "material/assets/resolve.h"
 
 namespace weft::app {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/material/material_place.h"
 #include "core/base/product.h"
 #include "core/base/result.h"
+#include "material/assets/material_place.h"
 
 // Materials of the library as calls name them. No path is made of what a client says.
 

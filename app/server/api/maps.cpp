@@ -3,13 +3,13 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/maps/maps.h"
-#include "app/jobs/maps/recipe.h"
-#include "app/jobs/maps/session_sets.h"
 #include "app/server/api/api.h"
 #include "app/server/api/viewed.h"
 #include "library/session_files.h"
 #include "library/session_name.h"
+#include "material/run/maps.h"
+#include "material/run/recipe.h"
+#include "material/run/session_sets.h"
 
 namespace weft::app {
 namespace {

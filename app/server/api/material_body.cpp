@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/material/resolve.h"
 #include "app/server/api/library_materials.h"
 #include "core/base/files.h"
 #include "library/session_name.h"
+#include "material/assets/resolve.h"
 
 namespace weft::app {
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/jobs/material/resolve.h"
 #include "app/server/api/api.h"
 #include "app/server/api/library_materials.h"
 #include "app/server/api/material_body.h"
@@ -11,6 +10,7 @@
 #include "app/server/api/viewed.h"
 #include "core/base/files.h"
 #include "library/session_files.h"
+#include "material/assets/resolve.h"
 
 namespace weft::app {
 namespace {

@@ -3,13 +3,13 @@
 #include <array>
 #include <utility>
 
-#include "app/jobs/compare.h"
 #include "app/server/api/api.h"
 #include "app/server/api/viewed.h"
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "core/solve/solve.h"
 #include "library/session_files.h"
+#include "material/read/compare.h"
 #include "solve/session/current.h"
 
 namespace weft::app {

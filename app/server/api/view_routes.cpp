@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include "app/jobs/compare.h"
 #include "app/jobs/view/tile_picture.h"
 #include "app/server/api/tile_query.h"
 #include "app/server/api/viewed.h"
+#include "material/read/compare.h"
 
 namespace weft::app {
 namespace {

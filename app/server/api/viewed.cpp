@@ -9,9 +9,6 @@
 #include <utility>
 #include <variant>
 
-#include "app/jobs/maps/maps.h"
-#include "app/jobs/maps/session_sets.h"
-#include "app/jobs/material/build.h"
 #include "app/server/api/library_materials.h"
 #include "app/server/api/tile_query.h"
 #include "core/base/files.h"
@@ -20,6 +17,9 @@
 #include "core/rig/camera.h"
 #include "core/rig/lights.h"
 #include "library/session_files.h"
+#include "material/assets/build.h"
+#include "material/run/maps.h"
+#include "material/run/session_sets.h"
 #include "report/preview.h"
 #include "solve/session/current.h"
 

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/export_facts.h"
 #include "app/jobs/import/photographs_import.h"
-#include "app/jobs/maps/map_set_facts.h"
-#include "app/jobs/rectify.h"
 #include "calibration/guide/photograph_set.h"
 #include "calibration/run/last_check.h"
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
+#include "exchange/presets/export_facts.h"
+#include "material/run/map_set_facts.h"
+#include "material/run/rectify.h"
 #include "solve/report/reflectance_facts.h"
 #include "solve/report/report_facts.h"
 #include "tests/core/places.h"

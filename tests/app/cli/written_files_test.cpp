@@ -9,8 +9,6 @@
 #include <vector>
 
 #include "app/jobs/import/description.h"
-#include "app/jobs/maps/recipe.h"
-#include "app/jobs/material/material_file.h"
 #include "calibration/run/board_photographs.h"
 #include "calibration/run/chart_pictures.h"
 #include "calibration/run/check.h"
@@ -20,6 +18,8 @@
 #include "capture/rig.h"
 #include "core/base/files.h"
 #include "exchange/presets/preset.h"
+#include "material/assets/material_file.h"
+#include "material/run/recipe.h"
 #include "tests/core/image_io/scratch_folder.h"
 
 namespace weft::app {

@@ -9,10 +9,10 @@
 #include <fstream>
 #include <string>
 
-#include "app/jobs/maps/maps.h"
 #include "app/server/rig_server.h"
 #include "bench/server/served_rig.h"
 #include "core/base/files.h"
+#include "material/run/maps.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/view/asked_session.h"
 

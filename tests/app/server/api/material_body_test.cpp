@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <string>
 
-#include "app/jobs/material/resolve.h"
 #include "app/server/api/library_materials.h"
 #include "core/base/files.h"
 #include "core/base/temporary_folder.h"
+#include "material/assets/resolve.h"
 
 namespace weft::app {
 namespace {

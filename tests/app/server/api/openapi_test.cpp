@@ -11,10 +11,10 @@
 #include <thread>
 #include <vector>
 
-#include "app/jobs/export_facts.h"
 #include "app/server/api/batch_place.h"
 #include "app/server/http/error_json.h"
 #include "core/base/files.h"
+#include "exchange/presets/export_facts.h"
 #include "tests/app/server/api/json_schema.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/server/scripted_rig.h"

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "material/run/finishing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/base/percent.h"
+#include "material/filtering/detail.h"
+#include "material/finish/color.h"
+#include "material/finish/crop.h"
+#include "material/finish/repair.h"
+#include "material/finish/straighten.h"
+#include "material/finish/tile.h"
+#include "material/lattice/lattice.h"
+#include "material/maps/flatten.h"
+#include "material/run/yarn_picture.h"
+
+namespace weft::app {
+namespace {
+
+using material::Lattice;
+using material::LatticeKind;
+using material::Surface;
+
+// By material::FlattenMethod.
+constexpr std::array<const char*, 3> kFlattenNames = {"polynomial", "corners", "high-pass"};
+
+// Steps between a cloth and its end, each with what those before it found.
+class Finisher {
+ public:
+  Finisher(Surface& surface, const FinishingInput& input, const JobContext& context)
+      : surface_(surface), input_(input), context_(context) {}
+
+  Result<Json> run(const Recipe& recipe, std::size_t at) {
+    const RecipeStep& step = recipe.steps[at];
+    if (step.name == "flatten") return flatten(step.options);
+    if (step.name == "straighten") return straighten(recipe, at);
+    if (step.name == "crop") return crop(step.options);
+    if (step.name == "tile") return tile();
+    if (step.name == "repair") return repair(step.options);
+    if (step.name == "color") return color(step.options);
+    if (step.name == "scale") return scale(step.options);
+    return detail();
+  }
+
+  FinishingFacts facts;
+
+ private:
+  // Of the tile that comes after; a straightened cloth is scaled so that so many are whole pixels.
+  static std::array<int, 2> repeats_wanted(const Recipe& recipe, std::size_t from) {
+    for (std::size_t i = from; i < recipe.steps.size(); ++i) {
+      if (recipe.steps[i].name != "tile") continue;
+      const auto repeats = recipe.steps[i].options["repeats"].get<std::array<double, 2>>();
+      return {static_cast<int>(repeats[0]), static_cast<int>(repeats[1])};
+    }
+    return {0, 0};
+  }
+
+  // Looked for once in the cloth as it stands, or again as somebody says that its yarns lie.
+  Result<void> find_lattice(const material::SaidYarns& said = {}) {
+    const bool is_said = said.turn_deg || said.x_px > 0 || said.y_px > 0;
+    if (lattice_ && !is_said) return {};
+    Result<Lattice> lattice = material::find_lattice(surface_, {.said = said, .threads = context_.threads});
+    if (!lattice) return std::move(lattice).error();
+    lattice_ = *lattice;
+    facts.yarn_px =
+        lattice->kind == LatticeKind::kRepeat ? std::min(lattice->yarn_x_px, lattice->yarn_y_px) : 0;
+    return {};
+  }
+
+  void warn(std::string name, std::string text, std::string remedy) {
+    facts.verdicts.push_back({std::move(name), std::move(text), std::move(remedy)});
+  }
+
+  Result<Json> flatten(const Json& options) {
+    material::FlattenOptions flatten;
+    const auto method = std::ranges::find(kFlattenNames, options["by"].get<std::string>());
+    flatten.method = static_cast<material::FlattenMethod>(method - kFlattenNames.begin());
+    flatten.degree = options["degree"].get<int>();
+    flatten.cut_mm = options["cut_mm"].get<double>();
+    flatten.mm_per_pixel = surface_.mm_per_pixel;
+    flatten.sigma_deg = options["always"].get<bool>() ? 0 : input_.slow_sigma_deg;
+    flatten.threads = context_.threads;
+    if (flatten.method == material::FlattenMethod::kRepeat) {
+      if (Result<void> ok = find_lattice(); !ok) return std::move(ok).error();
+      const material::Cell& cell = lattice_->colour;
+      if (lattice_->kind == LatticeKind::kRepeat)
+        flatten.repeat = material::Repeat{cell.a.x, -cell.a.y, cell.b.x, -cell.b.y};
+      else
+        flatten.method = material::FlattenMethod::kHann;
+    }
+    const Result<material::SlowSlopes> slow = material::slow_slopes(
+        surface_.slope.plane(0), surface_.slope.plane(1), surface_.status.plane(), flatten);
+    if (!slow) return slow.error();
+    material::flatten(*slow, surface_.status.plane(), surface_.slope.plane(0), surface_.slope.plane(1),
+                      context_.threads);
+    if (slow->acts) facts.removed = material::removed_slopes(*slow, context_.threads);
+    return Json{{"acts", slow->acts},
+                {"method", kFlattenNames[static_cast<std::size_t>(slow->method)]},
+                {"degree_found", slow->degree},
+                {"tilt_deg", slow->tilt_deg},
+                {"range_deg", slow->range_deg},
+                {"bow_mm", slow->bow_mm},
+                {"sigma_deg", flatten.sigma_deg}};
+  }
+
+  Result<Json> straighten(const Recipe& recipe, std::size_t at) {
+    const Json& said = recipe.steps[at].options;
+    material::SaidYarns yarns;
+    if (!said["turn_deg"].is_null()) yarns.turn_deg = said["turn_deg"].get<double>();
+    yarns.x_px = said["yarn_px"][0].get<double>() / input_.coarser;
+    yarns.y_px = said["yarn_px"][1].get<double>() / input_.coarser;
+    if (Result<void> ok = find_lattice(yarns); !ok) return std::move(ok).error();
+    Json found = {{"acts", false}, {"kind", material::name_of(lattice_->kind)}};
+    if (lattice_->kind != LatticeKind::kRepeat) {
+      warn("NO_REPEAT", fmt::format("the cloth was not straightened: {}", material::words_of(lattice_->kind)),
+           "nothing, if it has none; else scan more of it");
+      is_left_turned_ = true;
+      return found;
+    }
+    found.update({{"turn_deg", lattice_->turn_x_deg},
+                  {"skew_deg", lattice_->turn_y_deg - lattice_->turn_x_deg},
+                  {"yarn_px", {lattice_->yarn_x_px, lattice_->yarn_y_px}},
+                  {"yarn_share", lattice_->yarn_share},
+                  {"colours_repeat", lattice_->colours_repeat},
+                  {"strength", lattice_->strength}});
+    if (!yarns.turn_deg && material::is_to_be_asked(*lattice_)) {
+      found["picture"] = ask(at);
+      return found;
+    }
+    material::StraightenOptions options;
+    const std::array<int, 2> repeats = repeats_wanted(recipe, at);
+    options.repeats_x = repeats[0];
+    options.repeats_y = repeats[1];
+    options.threads = context_.threads;
+    Result<material::Straightened> straight = material::straighten(surface_, *lattice_, options);
+    if (!straight) return std::move(straight).error();
+    found.update({{"acts", true},
+                  {"repeats", {straight->repeats_x, straight->repeats_y}},
+                  {"period_px", {straight->period_px.width, straight->period_px.height}},
+                  {"mm_per_pixel", {straight->mm_per_pixel_x, straight->mm_per_pixel_y}},
+                  {"largest_pull_mm", straight->largest_pull_mm},
+                  {"rms_pull_mm", straight->rms_pull_mm}});
+    tile_ = material::tile_of(*straight);
+    surface_ = std::move(straight->surface);
+    lattice_.reset();
+    is_left_turned_ = false;
+    return found;
+  }
+
+  // Shows where the yarns seem to lie, and asks for a word; the picture's name.
+  std::string ask(std::size_t at) {
+    const std::string file = fmt::format("straighten_{}.png", at + 1);
+    facts.pictures.push_back({file, yarn_picture(surface_, *lattice_)});
+    const auto hundredths = [](double value) { return std::round(100 * value) / 100 + 0.0; };  // no -0.00
+    const double turn_deg = hundredths(lattice_->turn_x_deg),
+                 skew_deg = hundredths(lattice_->turn_y_deg - lattice_->turn_x_deg);
+    warn("TURN_ASKED",
+         fmt::format(
+             "the cloth was not straightened: its yarns seem to be turned by {:.2f} degrees and sheared by "
+             "{:.2f}, and beyond {:g} and {:g} those may be diagonals",
+             turn_deg, skew_deg, material::kMostTurn_deg, material::kMostSkew_deg),
+         fmt::format(
+             "look at {}; where its lines lie along the yarns give the recipe straighten = {{ turn_deg = "
+             "{:.2f}, yarn_px = [{:.2f}, {:.2f}] }}, else what is true",
+             file, turn_deg, input_.coarser * lattice_->yarn_x_px, input_.coarser * lattice_->yarn_y_px));
+    is_left_turned_ = true;
+    return file;
+  }
+
+  Result<Json> tile() {
+    material::TileOptions options = tile_.value_or(material::TileOptions());
+    options.threads = context_.threads;
+    if (!tile_)
+      warn("NOT_STRAIGHTENED", "the tile is cut where the cloth is closest to itself, without its repeat",
+           is_left_turned_ ? "do what is said of straightening"
+                           : "put the step straighten before the step tile");
+    Result<material::Tile> cut = material::tile(surface_, options);
+    if (!cut) return std::move(cut).error();
+    const auto seam = [](const material::Seam& s) {
+      return Json{{"overlap_px", s.overlap_px},
+                  {"wrap_step_slope", s.wrap_step_slope},
+                  {"wrap_step_albedo", s.wrap_step_albedo},
+                  {"wrap_step_height", s.wrap_step_height},
+                  {"gradient_slope", s.gradient_slope},
+                  {"gradient_albedo", s.gradient_albedo},
+                  {"residual", s.residual},
+                  {"curl", s.curl}};
+    };
+    Json found = {{"has_repeat", cut->has_repeat},
+                  {"from_px", {cut->x0, cut->y0}},
+                  {"places", cut->places},
+                  {"seam_x", seam(cut->x)},
+                  {"seam_y", seam(cut->y)},
+                  {"relief_mm", cut->relief_mm},
+                  {"normal_p99_deg", cut->normal_p99_deg}};
+    for (const auto& [axis, s] : {std::pair{"upright", cut->x}, {"level", cut->y}}) judge(axis, s);
+    surface_ = std::move(cut->surface);
+    tile_.reset();
+    return found;
+  }
+
+  Result<Json> crop(const Json& options) {
+    const double mm = surface_.mm_per_pixel;
+    material::CropOptions crop = {options["left_mm"], options["top_mm"], options["width_mm"],
+                                  options["height_mm"]};
+    if (crop.width_mm == 0) crop.width_mm = mm * surface_.size().width - crop.left_mm;
+    if (crop.height_mm == 0) crop.height_mm = mm * surface_.size().height - crop.top_mm;
+    Result<material::Cropped> cropped = material::crop(surface_, crop);
+    if (!cropped) return std::move(cropped).error();
+    const Rect& part = cropped->part_px;
+    surface_ = std::move(cropped->surface);
+    lattice_.reset();
+    return Json{{"from_px", {part.x0, part.y0}}, {"size_px", {part.width(), part.height()}}};
+  }
+
+  // The repeats that spots are filled from: of a straightened cloth upright, else as they are found.
+  Result<material::Cell> cell() {
+    if (tile_) return material::Cell{{tile_->repeat_x_px, 0}, {0, tile_->repeat_y_px}};
+    if (Result<void> ok = find_lattice(); !ok) return std::move(ok).error();
+    if (lattice_->kind == LatticeKind::kRepeat) return lattice_->axes;
+    return Error{ErrorKind::kBadData, "spots are filled from other repeats", "repair",
+                 std::string(material::words_of(lattice_->kind)), "crop the spots away"};
+  }
+
+  Result<Json> repair(const Json& options) {
+    if (options["spots"].empty()) return Json{{"filled", Json::array()}};
+    const Result<material::Cell> cell = this->cell();
+    if (!cell) return cell.error();
+    material::RepairOptions repair;
+    repair.cell = *cell;
+    repair.threads = context_.threads;
+    for (const Json& spot : options["spots"]) {
+      material::Spot place;
+      place.x_mm = spot["x_mm"];
+      place.y_mm = spot["y_mm"];
+      place.radius_mm = spot["radius_mm"];
+      repair.spots.push_back(place);
+    }
+    Result<material::Repaired> repaired = material::repair(std::move(surface_), repair);
+    if (!repaired) return std::move(repaired).error();
+    surface_ = std::move(repaired->surface);
+    Json filled = Json::array();
+    for (const material::Filled& each : repaired->filled) {
+      filled.push_back({{"repeats", {each.repeats_a, each.repeats_b}},
+                        {"source_px", {each.spot.source_px->x, each.spot.source_px->y}},
+                        {"mismatch", each.mismatch},
+                        {"pixels", each.pixels}});
+    }
+    return Json{{"filled", std::move(filled)}};
+  }
+
+  Result<Json> color(const Json& options) {
+    material::ColorOptions color;
+    color.white_gains = options["gain"].get<std::array<double, 3>>();
+    color.exposure = std::exp2(options["exposure"].get<double>());
+    Result<material::Colored> colored = material::color(std::move(surface_), color);
+    if (!colored) return std::move(colored).error();
+    surface_ = std::move(colored->surface);
+    if (colored->share_above_white > 0)
+      warn("ALBEDO_ABOVE_WHITE",
+           fmt::format("{} percent of the pixels have an albedo over 1",
+                       percent_words(colored->share_above_white)),
+           "take a smaller exposure");
+    return Json{{"share_above_white", colored->share_above_white}};
+  }
+
+  Result<Json> scale(const Json& options) {
+    const double before = surface_.mm_per_pixel, after = options["mm_per_pixel"];
+    if (after == 0) return Json{{"times", 1}};
+    Result<Surface> scaled = material::scale(std::move(surface_), after);
+    if (!scaled) return std::move(scaled).error();
+    surface_ = std::move(*scaled);
+    return Json{{"times", after / before}};
+  }
+
+  Result<Json> detail() {
+    material::DetailOptions options;
+    if (tile_) options.repeat = {tile_->repeat_x_px, tile_->repeat_y_px};
+    options.threads = context_.threads;
+    Result<material::DetailLayer> layer = material::detail_layer(surface_, {}, options);
+    if (!layer) return std::move(layer).error();
+    surface_.slope = std::move(layer->slope);
+    surface_.albedo = std::move(layer->albedo);
+    facts.is_detail = true;
+    return Json{{"slope_taken_out", {layer->facts.slope_x, layer->facts.slope_y}},
+                {"mean_taken_out", layer->facts.albedo},
+                {"share_of_frame", layer->facts.share_of_frame}};
+  }
+
+  // A joint that is sharper or softer than the cloth around it is seen.
+  void judge(std::string_view axis, const material::Seam& seam) {
+    const auto is_seen = [](double energy) { return energy < kLeastEnergy || energy > kMostEnergy; };
+    if (!is_seen(seam.gradient_slope) && !is_seen(seam.gradient_albedo)) return;
+    warn("SEAM_SEEN",
+         fmt::format("the {} joint has {:.2f} of the cloth's gradient energy in its slopes and {:.2f} in its "
+                     "albedo; {} to {} is not seen",
+                     axis, seam.gradient_slope, seam.gradient_albedo, kLeastEnergy, kMostEnergy),
+         tile_             ? "ask the step tile for another number of repeats"
+         : is_left_turned_ ? "do what is said of straightening"
+                           : "put the step straighten before the step tile");
+  }
+
+  static constexpr double kLeastEnergy = 0.9, kMostEnergy = 1.1;
+
+  Surface& surface_;
+  const FinishingInput& input_;
+  const JobContext& context_;
+  std::optional<Lattice> lattice_;
+  std::optional<material::TileOptions> tile_;  // of a cloth that was straightened
+  bool is_left_turned_ = false;                // straightening was told to, and said why not
+};
+
+}  // namespace
+
+Result<FinishingFacts> finish_surface(Surface& surface, const Recipe& recipe, const FinishingInput& input,
+                                      const JobContext& context) {
+  Finisher finisher(surface, input, context);
+  for (std::size_t i = 0; i < recipe.steps.size(); ++i) {
+    if (context.stop.stop_requested()) return interrupted();
+    context.progress("finish", static_cast<double>(i) / static_cast<double>(recipe.steps.size()));
+    Result<Json> found = finisher.run(recipe, i);
+    if (!found) {
+      Error error = std::move(found).error();
+      error.where = fmt::format("step {} ({}): {}", i + 1, recipe.steps[i].name, error.where);
+      return error;
+    }
+    finisher.facts.steps.push_back(std::move(*found));
+  }
+  return std::move(finisher.facts);
+}
+
+}  // namespace weft::app

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/product.h"
+#include "core/describe/fields.h"
+#include "core/image/image.h"
+#include "core/solve/verdict.h"
+#include "material/run/map_facts.h"
+#include "material/run/map_work.h"
+#include "material/validation/validate.h"
+#include "solve/session/current.h"
+
+// What maps.json says of a set of maps (weft.maps/1).
+
+namespace weft::app {
+
+inline constexpr ProductKind kMapsProduct = {"weft.maps", "maps.json", "set of maps",
+                                             "make it first with weft maps"};
+
+/// As documents have them.
+void describe(Fields& fields, DeriveOptions& options);
+
+/// A step of the recipe, as it was told.
+struct MapStep {
+  std::string name;  ///< "tile"
+  Json facts;        ///< what it found; null: nothing
+  Json document;     ///< all of it, its options too
+};
+
+struct MapCheck {
+  std::string name;
+  material::Severity severity = material::Severity::kPassed;
+  double number = 0, limit = 0;
+  std::string text;
+  std::string picture;  ///< a file beside it; empty: none
+};
+
+/// What was taken out of the rims of holes.
+struct TableTakenOut {
+  std::array<double, 3> albedo = {};  ///< of the table
+  std::int64_t unmixed = 0, left = 0;
+};
+
+struct MapSetFacts {
+  std::string id;
+  library::SourceFacts source;
+  std::string rectified;  ///< id of the maps that they were made of
+  Size size;
+  double mm_per_pixel = 0;
+  bool is_tile = false, is_preview = false;
+  std::vector<MapStep> steps = {};
+  std::vector<MapFacts> maps = {};
+  DeriveOptions derive = {};
+  std::vector<MapCheck> checks = {};
+  std::vector<Verdict> verdicts = {};
+  std::optional<TableTakenOut> table = {};
+  Json document = {};  ///< as it was read, so that fields of newer versions survive
+};
+void describe(Fields& fields, MapSetFacts& facts);
+Json json_of(const MapSetFacts& facts);
+
+/// Reads maps.json of a folder. kNoInput, kBadData.
+Result<MapSetFacts> read_map_set(const std::filesystem::path& folder);
+
+}  // namespace weft::app

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "material/run/map_work.h"
+
+#include <cmath>
+#include <utility>
+
+#include "core/image_io/image_io.h"
+#include "report/downsampler.h"
+#include "report/preview.h"
+#include "solve/files/pictures.h"
+
+namespace weft::app {
+namespace {
+
+// Normals and colours as such, anything else as heat from its least to its largest value.
+report::Picture picture_of(const MapFacts& facts, const Image<float>& reduced) {
+  if (reduced.planes() >= 3 && facts.channels.front() == "X") return report::normal_picture(reduced);
+  if (reduced.planes() >= 3 && facts.channels.front() == "R")
+    return report::albedo_picture(reduced, report::display_scale(reduced));
+  Image<float> shown(reduced.size());
+  for (int y = 0; y < shown.height(); ++y) {
+    for (int x = 0; x < shown.width(); ++x) shown(x, y) = reduced(x, y) - static_cast<float>(facts.least);
+  }
+  const double span = facts.most > facts.least ? facts.most - facts.least : 1;
+  return report::heat_picture(shown.plane(), span, " " + facts.unit);
+}
+
+}  // namespace
+
+Result<void> write_map(MapWork& work, MapFacts facts, const std::vector<View<const float>>& planes) {
+  const WriteOptions options = {.type = facts.unit == "mm" ? SampleType::kFloat : SampleType::kHalf,
+                                .compression = work.compression,
+                                .attributes = attributes_of(facts, work.surface.mm_per_pixel),
+                                .pitch_mm = {work.surface.mm_per_pixel, work.surface.mm_per_pixel}};
+  if (Result<void> ok = write_image(work.folder / facts.file, planes, facts.channels, options); !ok)
+    return ok;
+  return draw_map(work, std::move(facts), planes);
+}
+
+PixelPitch pitch_of_level(const material::Surface& surface, Size level) {
+  return {surface.mm_per_pixel * surface.size().width / level.width,
+          surface.mm_per_pixel * surface.size().height / level.height};
+}
+
+Result<void> draw_map(MapWork& work, MapFacts facts, const std::vector<View<const float>>& planes) {
+  measure(facts, planes.front());
+  report::Downsampler reduced(planes.front().size(), static_cast<int>(planes.size()));
+  reduced.add_rows(planes);
+  facts.picture = facts.name + ".png";
+  const report::Picture picture = picture_of(facts, reduced.averages());
+  if (Result<void> ok = write_png(work.folder / facts.picture, picture); !ok) return ok;
+  work.made.push_back(std::move(facts));
+  return {};
+}
+
+void write_constant(MapWork& work, MapFacts facts, double value, std::string why) {
+  facts.constant = value;
+  facts.why = std::move(why);
+  work.made.push_back(std::move(facts));
+}
+
+const std::vector<DerivedMap>& derived_maps() {
+  static const std::vector<DerivedMap> maps = {
+      {"height", "millimetres towards the camera", make_height},
+      {"curl", "how far slopes are from those of any surface", make_curl},
+      {"occlusion", "share of the sky that a point sees, bounces with it, and the bent normal",
+       make_occlusion},
+      {"cavity", "0 deep, 0.5 flat, 1 high, within --cavity", make_cavity},
+      {"roughness", "alpha and f0 of the lobe, measured or that of --cloth", make_roughness},
+      {"gloss", "the lobe on the scales of other engines", make_gloss},
+      {"mips", "normals and roughness of coarser levels, as bright as the finest", make_mips},
+      {"detail", "a layer for other materials: slopes of mean 0, albedo over its mean", make_detail},
+      {"opacity", "0 a hole, 1 cloth: by the light below and --bare, else the holes that the solver saw",
+       make_opacity}};
+  return maps;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "material/run/session_sets.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace weft::app {
+namespace {
+
+bool has_maps(const MapSetFacts& facts, const std::vector<std::string>& wanted) {
+  return std::ranges::all_of(wanted, [&](const std::string& name) {
+    return std::ranges::find(facts.maps, name, &MapFacts::name) != facts.maps.end();
+  });
+}
+
+SessionSet set_of(const library::SessionSolves& solves, Product product, MapSetFacts facts) {
+  const library::SourceFacts& source = facts.source;
+  const library::ChoosableSolve* const found = solves.find(source.solve);
+  SessionSet set = {std::move(product), {}, {}, false, why_stale(solves, source.solve)};
+  set.level = found != nullptr ? found->level : source.level;
+  set.is_draft = found != nullptr ? found->is_preview() : source.is_draft;
+  set.facts = std::move(facts);
+  return set;
+}
+
+}  // namespace
+
+std::string text_at(const Json& document, const char* key) {
+  const Json value = document.is_object() ? document.value(key, Json()) : Json();
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+bool flag_at(const Json& document, const char* key) {
+  return document.is_object() && document.value(key, Json()) == Json(true);
+}
+
+std::vector<SessionSet> sets_of(const library::SessionSolves& solves, bool of_previews) {
+  std::vector<SessionSet> sets;
+  for (Product& product : list_products(kMapsProduct, solves.session / "maps")) {
+    Result<MapSetFacts> facts = read_map_set(product.folder);
+    if (facts && (of_previews || !facts->is_preview))
+      sets.push_back(set_of(solves, std::move(product), std::move(*facts)));
+  }
+  return sets;
+}
+
+const SessionSet* set_to_use(const library::SessionSolves& solves, const std::vector<SessionSet>& sets,
+                             const std::vector<std::string>& wanted) {
+  const library::ChoosableSolve* const current = solves.current_one();
+  const auto order_of = [&](const SessionSet& set) {
+    const bool is_of_current = current != nullptr && set.facts.source.solve == current->id;
+    return std::tuple(!set.is_draft, is_of_current, has_maps(set.facts, wanted));
+  };
+  const SessionSet* best = nullptr;
+  for (const SessionSet& set : sets) {
+    if (best == nullptr || order_of(set) >= order_of(*best)) best = &set;
+  }
+  return best;
+}
+
+std::string how_to_make_better(const library::SessionSolves& solves) {
+  const std::string session = solves.session.string();
+  const library::ChoosableSolve* const best = solves.best ? &solves.all[*solves.best] : nullptr;
+  const bool has_better = best != nullptr && !best->is_preview() && best->outdated.empty();
+  std::string solve = fmt::format("weft solve {} --quality standard, then with ", session);
+  if (has_better) solve.clear();
+  const bool is_chosen = solves.is_chosen && has_better && solves.current_one()->id != best->id;
+  return fmt::format("make better ones with {}weft maps {}{}", solve, session,
+                     is_chosen ? " --solve " + best->id : "");
+}
+
+std::vector<std::string> source_lines(const library::SourceFacts& source) {
+  std::vector<std::string> lines = {
+      fmt::format("from the {}{}solve {}", source.level, source.level.empty() ? "" : " ", source.solve)};
+  if (source.is_draft) lines.back() += ", a draft of half the size and without masks";
+  for (const std::string& why : source.stale) lines.push_back(fmt::format("stale: {}", why));
+  return lines;
+}
+
+library::SourceFacts source_in(const Json& scan) {
+  library::SourceFacts source = {text_at(scan, "solve"), text_at(scan, "level"), flag_at(scan, "draft"), {}};
+  for (const Json& why : scan.is_object() ? scan.value("stale", Json::array()) : Json::array()) {
+    if (why.is_string()) source.stale.push_back(why.get<std::string>());
+  }
+  return source;
+}
+
+}  // namespace weft::app
