@@ -14,10 +14,10 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/export/export_json.h"
-#include "app/jobs/export/export_request.h"
-#include "app/jobs/export/preset_files.h"
-#include "app/jobs/export/price.h"
+#include "exchange/export/export_json.h"
+#include "exchange/export/export_request.h"
+#include "exchange/export/preset_files.h"
+#include "exchange/export/price.h"
 
 namespace weft::app {
 namespace {

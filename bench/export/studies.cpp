@@ -12,8 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/export/export.h"
-#include "app/jobs/export/price.h"
 #include "bench/accuracy/scenes.h"
 #include "bench/base/yardsticks.h"
 #include "core/base/temporary_folder.h"
@@ -23,6 +21,8 @@
 #include "core/image_io/image_io.h"
 #include "exchange/blocks/decode.h"
 #include "exchange/blocks/encode.h"
+#include "exchange/export/export.h"
+#include "exchange/export/price.h"
 #include "exchange/presets/preset.h"
 #include "simulator/scene/scene.h"
 #include "solve/levels/frame.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The chain from photographs to files that other programs open, by the job and by the program.
-#include "app/jobs/export/export.h"
+#include "exchange/export/export.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -14,12 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/export/preset_files.h"
 #include "core/base/files.h"
 #include "core/image/color_spaces.h"
 #include "core/image_io/image_io.h"
 #include "exchange/blocks/dds.h"
 #include "exchange/blocks/decode.h"
+#include "exchange/export/preset_files.h"
 #include "exchange/presets/preset.h"
 #include "material/run/maps.h"
 #include "solve/run/solve.h"

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "app/jobs/batch/lean.h"
-#include "app/jobs/export/export.h"
 #include "batch/outcome.h"
 #include "core/base/files.h"
 #include "core/base/temporary_folder.h"
 #include "core/rig/session.h"
+#include "exchange/export/export.h"
 #include "library/session_files.h"
 #include "material/run/maps.h"
 #include "solve/run/solve.h"

@@ -13,7 +13,6 @@
 #include "app/jobs/batch/plan_file.h"
 #include "app/jobs/batch/sample.h"
 #include "app/jobs/batch/survey.h"
-#include "app/jobs/export/preset_files.h"
 #include "batch/choice.h"
 #include "batch/forecast.h"
 #include "batch/outcome.h"
@@ -22,6 +21,7 @@
 #include "core/base/parallel.h"
 #include "core/solve/solve.h"
 #include "core/solve/solve_record.h"
+#include "exchange/export/preset_files.h"
 #include "solve/report/report.h"
 #include "solver/method.h"
 

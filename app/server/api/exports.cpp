@@ -6,12 +6,12 @@
 #include <cctype>
 #include <utility>
 
-#include "app/jobs/export/export.h"
-#include "app/jobs/export/preset_files.h"
 #include "app/server/api/api.h"
 #include "app/server/api/library_materials.h"
 #include "app/server/api/viewed.h"
 #include "core/base/files.h"
+#include "exchange/export/export.h"
+#include "exchange/export/preset_files.h"
 #include "library/session_files.h"
 #include "library/session_name.h"
 

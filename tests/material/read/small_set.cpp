@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "app/jobs/export/export.h"
 #include "core/base/files.h"
 #include "core/base/json_document.h"
+#include "exchange/export/export.h"
 
 namespace weft::app {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/prepare.h"
+#include "exchange/export/prepare.h"
 
 #include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "app/jobs/export/preset_files.h"
-#include "app/jobs/export/price.h"
 #include "core/base/files.h"
 #include "core/base/text.h"
+#include "exchange/export/preset_files.h"
+#include "exchange/export/price.h"
 #include "exchange/presets/channels.h"
 #include "material/assets/build.h"
 #include "material/assets/material_place.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/texture_file.h"
+#include "exchange/export/texture_file.h"
 
 #include <algorithm>
 #include <span>

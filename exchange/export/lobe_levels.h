@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "app/jobs/export/map_folder.h"
 #include "core/base/result.h"
 #include "core/image/image.h"
+#include "exchange/export/map_folder.h"
 
 namespace weft::app {
 

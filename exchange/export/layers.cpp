@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/layers.h"
+#include "exchange/export/layers.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include <string>
 #include <utility>
 
-#include "app/jobs/export/textured.h"
 #include "core/base/files.h"
 #include "core/base/text.h"
 #include "core/image_io/image_io.h"
+#include "exchange/export/textured.h"
 #include "exchange/materialx/materialx.h"
 #include "material/assets/runtime.h"
 

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <vector>
 
-#include "app/jobs/export/encode_files.h"
-#include "app/jobs/export/export_json.h"
-#include "app/jobs/export/map_folder.h"
-#include "app/jobs/export/plan.h"
 #include "core/base/result.h"
+#include "exchange/export/encode_files.h"
+#include "exchange/export/export_json.h"
+#include "exchange/export/map_folder.h"
+#include "exchange/export/plan.h"
 
 namespace weft::app {
 

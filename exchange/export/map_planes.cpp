@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/map_planes.h"
+#include "exchange/export/map_planes.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/preset_files.h"
+#include "exchange/export/preset_files.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/encode_files.h"
+#include "exchange/export/encode_files.h"
 
 #include <fmt/format.h>
 
@@ -11,10 +11,10 @@
 #include <system_error>
 #include <utility>
 
-#include "app/jobs/export/map_planes.h"
-#include "app/jobs/export/texture_file.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
+#include "exchange/export/map_planes.h"
+#include "exchange/export/texture_file.h"
 
 namespace weft::app {
 namespace {

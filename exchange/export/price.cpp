@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/price.h"
+#include "exchange/export/price.h"
 
 #include <fmt/format.h>
 
@@ -10,12 +10,12 @@
 #include <system_error>
 #include <utility>
 
-#include "app/jobs/export/export_json.h"
-#include "app/jobs/export/map_planes.h"
-#include "app/jobs/export/prepare.h"
-#include "app/jobs/export/texture_file.h"
 #include "core/base/temporary_folder.h"
 #include "core/describe/field_json.h"
+#include "exchange/export/export_json.h"
+#include "exchange/export/map_planes.h"
+#include "exchange/export/prepare.h"
+#include "exchange/export/texture_file.h"
 
 namespace weft::app {
 namespace {

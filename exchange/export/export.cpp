@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/export.h"
+#include "exchange/export/export.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -10,14 +10,14 @@
 #include <system_error>
 #include <utility>
 
-#include "app/jobs/export/documents.h"
-#include "app/jobs/export/encode_files.h"
-#include "app/jobs/export/export_json.h"
-#include "app/jobs/export/layers.h"
-#include "app/jobs/export/plan.h"
-#include "app/jobs/export/prepare.h"
-#include "app/jobs/export/textured.h"
 #include "core/base/files.h"
+#include "exchange/export/documents.h"
+#include "exchange/export/encode_files.h"
+#include "exchange/export/export_json.h"
+#include "exchange/export/layers.h"
+#include "exchange/export/plan.h"
+#include "exchange/export/prepare.h"
+#include "exchange/export/textured.h"
 
 namespace weft::app {
 namespace {

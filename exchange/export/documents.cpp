@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/documents.h"
+#include "exchange/export/documents.h"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,9 @@
 #include <system_error>
 #include <utility>
 
-#include "app/jobs/export/textured.h"
 #include "core/base/files.h"
 #include "exchange/document.h"
+#include "exchange/export/textured.h"
 #include "exchange/gltf/glb.h"
 #include "exchange/materialx/materialx.h"
 #include "exchange/u3m/u3m.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/plan.h"
+#include "exchange/export/plan.h"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "app/jobs/export/map_planes.h"
-#include "app/jobs/export/preset_files.h"
 #include "core/base/files.h"
 #include "exchange/document.h"
+#include "exchange/export/map_planes.h"
+#include "exchange/export/preset_files.h"
 
 namespace weft::app {
 namespace {

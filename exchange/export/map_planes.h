@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/export/lobe_levels.h"
-#include "app/jobs/export/map_folder.h"
 #include "core/base/result.h"
 #include "core/image/image.h"
+#include "exchange/export/lobe_levels.h"
+#include "exchange/export/map_folder.h"
 #include "exchange/presets/channels.h"
 #include "exchange/presets/mips.h"
 

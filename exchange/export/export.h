@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/export/map_folder.h"
 #include "core/base/job.h"
 #include "core/base/result.h"
+#include "exchange/export/map_folder.h"
 #include "exchange/presets/export_facts.h"
 #include "exchange/presets/preset.h"
 

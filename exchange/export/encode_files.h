@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/export/map_folder.h"
-#include "app/jobs/export/plan.h"
 #include "core/base/job.h"
 #include "core/base/result.h"
+#include "exchange/export/map_folder.h"
+#include "exchange/export/plan.h"
 #include "exchange/presets/loss.h"
 
 namespace weft::app {

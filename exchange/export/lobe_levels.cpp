@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/lobe_levels.h"
+#include "exchange/export/lobe_levels.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/export_json.h"
+#include "exchange/export/export_json.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/textured.h"
+#include "exchange/export/textured.h"
 
 #include <algorithm>
 #include <array>

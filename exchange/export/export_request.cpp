@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/export/export_request.h"
+#include "exchange/export/export_request.h"
 
 #include "core/describe/described_fields.h"
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/export/encode_files.h"
-#include "app/jobs/export/map_folder.h"
-#include "app/jobs/export/plan.h"
+#include "exchange/export/encode_files.h"
+#include "exchange/export/map_folder.h"
+#include "exchange/export/plan.h"
 #include "exchange/textured_material.h"
 
 namespace weft::app {

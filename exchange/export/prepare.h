@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "app/jobs/export/export.h"
-#include "app/jobs/export/map_folder.h"
-#include "app/jobs/export/plan.h"
 #include "core/base/job.h"
 #include "core/base/result.h"
+#include "exchange/export/export.h"
+#include "exchange/export/map_folder.h"
+#include "exchange/export/plan.h"
 
 namespace weft::app {
 

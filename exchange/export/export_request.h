@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "app/jobs/export/export.h"
 #include "core/describe/fields.h"
+#include "exchange/export/export.h"
 
 namespace weft::app {
 

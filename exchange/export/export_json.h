@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "app/jobs/export/encode_files.h"
-#include "app/jobs/export/map_folder.h"
-#include "app/jobs/export/plan.h"
 #include "core/base/json_document.h"
+#include "exchange/export/encode_files.h"
+#include "exchange/export/map_folder.h"
+#include "exchange/export/plan.h"
 #include "exchange/presets/export_facts.h"
 
 namespace weft::app {

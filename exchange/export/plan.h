@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/export/export.h"
-#include "app/jobs/export/map_folder.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "core/image_io/image_io.h"
+#include "exchange/export/export.h"
+#include "exchange/export/map_folder.h"
 #include "exchange/presets/pack.h"
 
 namespace weft::app {
