@@ -6,9 +6,9 @@
 
 #include "app/cli/options.h"
 #include "app/cli/verb.h"
-#include "batch/farm.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
+#include "library/batch/farm.h"
 
 namespace weft::app {
 

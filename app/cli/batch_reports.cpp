@@ -14,12 +14,12 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
-#include "app/jobs/batch/accept_batch.h"
-#include "app/jobs/batch/batch_page.h"
-#include "app/jobs/batch/farm.h"
-#include "app/jobs/batch/merge_batch.h"
 #include "core/base/process.h"
 #include "core/describe/field_json.h"
+#include "library/run/accept_batch.h"
+#include "library/run/batch_page.h"
+#include "library/run/farm.h"
+#include "library/run/merge_batch.h"
 #include "solve/report/report.h"
 
 namespace weft::app {

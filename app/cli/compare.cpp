@@ -15,8 +15,8 @@
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/batch/solve_change.h"
 #include "core/describe/field_json.h"
+#include "library/run/solve_change.h"
 
 namespace weft::app {
 namespace {

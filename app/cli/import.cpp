@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/import/import.h"
+#include "library/import/import.h"
 
 #include <fmt/format.h>
 

@@ -14,10 +14,10 @@
 #include "app/cli/verb.h"
 #include "core/base/files.h"
 #include "core/rig/session.h"
-#include "library/catalogue.h"
-#include "library/edits.h"
-#include "library/metadata.h"
-#include "library/prune.h"
+#include "library/catalogue/catalogue.h"
+#include "library/catalogue/edits.h"
+#include "library/catalogue/metadata.h"
+#include "library/catalogue/prune.h"
 
 namespace weft::app {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/cli/options.h"
 #include "app/cli/verb.h"
 #include "core/base/result.h"
-#include "library/catalogue.h"
+#include "library/catalogue/catalogue.h"
 
 namespace weft::app {
 

@@ -19,11 +19,11 @@
 #include <tuple>
 #include <vector>
 
-#include "app/jobs/batch/plan_file.h"
 #include "bench/batch/archive.h"
 #include "bench/batch/farm_simulation.h"
 #include "core/base/parallel.h"
 #include "core/base/temporary_folder.h"
+#include "library/run/plan_file.h"
 
 namespace weft::bench {
 namespace {

@@ -13,11 +13,6 @@
 #include <variant>
 #include <vector>
 
-#include "app/jobs/batch/batch_page.h"
-#include "app/jobs/batch/merge_batch.h"
-#include "app/jobs/batch/plan_file.h"
-#include "batch/outcome.h"
-#include "batch/plan.h"
 #include "bench/batch/archive.h"
 #include "core/base/files.h"
 #include "core/base/job.h"
@@ -25,6 +20,11 @@
 #include "core/base/temporary_folder.h"
 #include "core/rig/calibration.h"
 #include "core/solve/solve.h"
+#include "library/batch/outcome.h"
+#include "library/batch/plan.h"
+#include "library/run/batch_page.h"
+#include "library/run/merge_batch.h"
+#include "library/run/plan_file.h"
 #include "simulator/scene/scene.h"
 #include "solve/run/solve.h"
 

@@ -21,7 +21,7 @@
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/base/temporary_folder.h"
-#include "library/catalogue.h"
+#include "library/catalogue/catalogue.h"
 
 namespace weft::bench {
 namespace {

@@ -81,7 +81,7 @@ constexpr char kReflectance[] = "weft.reflectance";
 constexpr char kPhotographs[] = "weft.photographs";
 constexpr char kBatchReport[] = "weft.batch-report";
 
-// Formats of lines, whose stored files tests/batch/stored_lines_test.cpp reads.
+// Formats of lines, whose stored files tests/library/batch/stored_lines_test.cpp reads.
 const std::set<std::string> kOfLines = {"weft.batch/1", "weft.batch/1.1", "weft.batch-result/1",
                                         "weft.batch-result/1.1"};
 

@@ -33,7 +33,6 @@ struct Door {
 };
 
 const std::vector<Layer> kLayers = {
-    {{"batch/"}, {"core/"}},
     {{"core/image_io/"}, {"core/"}},
     {{"core/toml/"}, {"core/"}},
     {{"core/"}, {}, {"core/image_io/", "core/toml/"}},
@@ -70,29 +69,29 @@ const std::vector<Layer> kLayers = {
     {{"virtual_rig/program/"}, {"app/cli/exit_code", "core/", "simulator/", "virtual_rig/"}},
     {{"virtual_rig/"}, {"core/", "firmware/protocol/", "simulator/"}},
     {{"app/jobs/"},
-     {"app/jobs/", "batch/", "calibration/", "capture/", "core/", "exchange/", "library/", "material/",
-      "report/", "solve/", "solver/"}},
+     {"app/jobs/", "calibration/", "capture/", "core/", "exchange/", "library/", "material/", "report/",
+      "solve/", "solver/"}},
     {{"app/server/"},
-     {"app/jobs/", "batch/", "calibration/", "capture/", "core/", "exchange/", "firmware/protocol/",
-      "library/", "material/", "report/", "simulator/torture_request", "solve/", "solver/",
+     {"app/jobs/", "calibration/", "capture/", "core/", "exchange/", "firmware/protocol/", "library/",
+      "material/", "report/", "simulator/torture_request", "solve/", "solver/",
       "virtual_rig/control_socket"}},
     {{"app/cli/"},
-     {"app/jobs/", "app/server/", "batch/", "calibration/", "capture/", "core/", "exchange/", "library/",
-      "material/", "report/", "simulator/", "solve/", "solver/", "virtual_rig/rig_process"}},
+     {"app/jobs/", "app/server/", "calibration/", "capture/", "core/", "exchange/", "library/", "material/",
+      "report/", "simulator/", "solve/", "solver/", "virtual_rig/rig_process"}},
     {{"firmware/"}, {}},
     {{"bench/program/"}, {"app/cli/", "bench/", "capture/rig_devices/", "core/"}},
     {{"bench/"},
-     {"app/jobs/", "app/server/", "batch/", "calibration/", "capture/", "core/", "exchange/", "library/",
-      "material/", "report/", "simulator/", "solve/", "solver/", "virtual_rig/"}},
+     {"app/jobs/", "app/server/", "calibration/", "capture/", "core/", "exchange/", "library/", "material/",
+      "report/", "simulator/", "solve/", "solver/", "virtual_rig/"}},
     {{"tests/"},
-     {"app/", "batch/", "bench/", "calibration/", "capture/", "core/", "exchange/", "firmware/", "library/",
+     {"app/", "bench/", "calibration/", "capture/", "core/", "exchange/", "firmware/", "library/",
       "material/", "report/", "simulator/", "solve/", "solver/", "virtual_rig/"}},
 };
 
 /// What a path from the root of the repository begins with.
-const Prefixes kRoots = {"app/",      "batch/",    "bench/",   "calibration/", "capture/", "core/",
-                         "exchange/", "firmware/", "library/", "material/",    "report/",  "simulator/",
-                         "solve/",    "solver/",   "tests/",   "virtual_rig/"};
+const Prefixes kRoots = {"app/",       "bench/",    "calibration/", "capture/",  "core/",
+                         "exchange/",  "firmware/", "library/",     "material/", "report/",
+                         "simulator/", "solve/",    "solver/",      "tests/",    "virtual_rig/"};
 
 const std::vector<Door> kDoors = {
     {"CLI/", {"app/cli/", "tests/app/cli/", "virtual_rig/program/"}},

@@ -17,7 +17,7 @@
 #include "core/image_io/image_io.h"
 #include "core/rig/session.h"
 #include "core/solve/solve.h"
-#include "library/session_files.h"
+#include "library/catalogue/session_files.h"
 #include "solve/session/current.h"
 #include "tests/core/places.h"
 #include "tests/system/samples.h"

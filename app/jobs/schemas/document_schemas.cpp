@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "app/jobs/batch/merge_batch.h"
-#include "app/jobs/import/photographs_import.h"
-#include "batch/outcome.h"
-#include "batch/plan.h"
 #include "calibration/guide/photograph_set.h"
 #include "calibration/run/last_check.h"
 #include "core/describe/field_json.h"
@@ -15,6 +11,10 @@
 #include "core/rig/session.h"
 #include "core/solve/solve.h"
 #include "exchange/presets/export_facts.h"
+#include "library/batch/outcome.h"
+#include "library/batch/plan.h"
+#include "library/import/photographs_import.h"
+#include "library/run/merge_batch.h"
 #include "material/run/map_set_facts.h"
 #include "material/run/rectify.h"
 #include "solve/report/reflectance_facts.h"

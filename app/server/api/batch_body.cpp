@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/batch/plan_file.h"
 #include "app/server/api/batch_place.h"
+#include "library/run/plan_file.h"
 
 namespace weft::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/base/files.h"
-#include "library/session_name.h"
+#include "library/catalogue/session_name.h"
 
 namespace weft::app {
 namespace {

@@ -8,16 +8,16 @@
 #include <map>
 #include <utility>
 
-#include "app/jobs/batch/accept_batch.h"
-#include "app/jobs/batch/batch_page.h"
-#include "app/jobs/batch/merge_batch.h"
 #include "app/server/api/api.h"
 #include "app/server/api/batch_place.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/viewed.h"
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
-#include "library/session_name.h"
+#include "library/catalogue/session_name.h"
+#include "library/run/accept_batch.h"
+#include "library/run/batch_page.h"
+#include "library/run/merge_batch.h"
 
 namespace weft::app {
 namespace {

@@ -12,8 +12,8 @@
 #include "core/base/files.h"
 #include "exchange/export/export.h"
 #include "exchange/export/preset_files.h"
-#include "library/session_files.h"
-#include "library/session_name.h"
+#include "library/catalogue/session_files.h"
+#include "library/catalogue/session_name.h"
 
 namespace weft::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_choice.h"
 #include "app/server/http/error_json.h"
-#include "library/session_files.h"
+#include "library/catalogue/session_files.h"
 
 namespace weft::app {
 namespace {

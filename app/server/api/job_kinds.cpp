@@ -6,8 +6,6 @@
 #include <cctype>
 #include <string_view>
 
-#include "app/jobs/batch/plan_batch.h"
-#include "app/jobs/batch/run_batch.h"
 #include "app/jobs/torture_request.h"
 #include "app/server/api/batch_body.h"
 #include "app/server/api/job_arguments.h"
@@ -23,6 +21,8 @@
 #include "calibration/run/update.h"
 #include "capture/scan/copy_request.h"
 #include "exchange/export/export_request.h"
+#include "library/run/plan_batch.h"
+#include "library/run/run_batch.h"
 #include "material/assets/build_request.h"
 #include "material/run/maps_request.h"
 #include "material/run/rectify.h"

@@ -3,7 +3,7 @@
 
 #include "app/server/api/body_fields.h"
 #include "core/base/files.h"
-#include "library/session_files.h"
+#include "library/catalogue/session_files.h"
 
 namespace weft::app {
 namespace {

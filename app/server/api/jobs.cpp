@@ -18,7 +18,7 @@
 #include "core/base/files.h"
 #include "core/base/number.h"
 #include "core/describe/field_json.h"
-#include "library/session_name.h"
+#include "library/catalogue/session_name.h"
 
 namespace weft::app {
 namespace {

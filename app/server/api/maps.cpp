@@ -5,8 +5,8 @@
 
 #include "app/server/api/api.h"
 #include "app/server/api/viewed.h"
-#include "library/session_files.h"
-#include "library/session_name.h"
+#include "library/catalogue/session_files.h"
+#include "library/catalogue/session_name.h"
 #include "material/run/maps.h"
 #include "material/run/recipe.h"
 #include "material/run/session_sets.h"

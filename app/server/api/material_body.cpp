@@ -9,7 +9,7 @@
 
 #include "app/server/api/library_materials.h"
 #include "core/base/files.h"
-#include "library/session_name.h"
+#include "library/catalogue/session_name.h"
 #include "material/assets/resolve.h"
 
 namespace weft::app {

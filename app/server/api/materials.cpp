@@ -9,7 +9,7 @@
 #include "app/server/api/scan_body.h"
 #include "app/server/api/viewed.h"
 #include "core/base/files.h"
-#include "library/session_files.h"
+#include "library/catalogue/session_files.h"
 #include "material/assets/resolve.h"
 
 namespace weft::app {

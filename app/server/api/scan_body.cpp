@@ -10,8 +10,8 @@
 #include "app/server/api/body_fields.h"
 #include "core/describe/described_fields.h"
 #include "core/describe/field_json.h"
-#include "library/metadata.h"
-#include "library/session_name.h"
+#include "library/catalogue/metadata.h"
+#include "library/catalogue/session_name.h"
 
 namespace weft::app {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/base/iso_time.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
-#include "library/session_name.h"
+#include "library/catalogue/session_name.h"
 
 namespace weft::app {
 namespace {

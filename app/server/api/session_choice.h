@@ -10,7 +10,7 @@
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/rig/session.h"
-#include "library/catalogue.h"
+#include "library/catalogue/catalogue.h"
 
 namespace weft::app {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "library/catalogue.h"
+#include "library/catalogue/catalogue.h"
 
 namespace weft::app {
 

@@ -7,9 +7,9 @@
 #include "app/server/api/api.h"
 #include "app/server/api/session_choice.h"
 #include "app/server/api/session_query.h"
-#include "library/metadata.h"
-#include "library/session_files.h"
-#include "library/session_name.h"
+#include "library/catalogue/metadata.h"
+#include "library/catalogue/session_files.h"
+#include "library/catalogue/session_name.h"
 #include "solve/session/current.h"
 #include "solve/session/left_out.h"
 

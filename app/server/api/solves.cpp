@@ -8,7 +8,7 @@
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "core/solve/solve.h"
-#include "library/session_files.h"
+#include "library/catalogue/session_files.h"
 #include "material/read/compare.h"
 #include "solve/session/current.h"
 

@@ -16,7 +16,7 @@
 #include "core/describe/field_json.h"
 #include "core/rig/camera.h"
 #include "core/rig/lights.h"
-#include "library/session_files.h"
+#include "library/catalogue/session_files.h"
 #include "material/assets/build.h"
 #include "material/run/maps.h"
 #include "material/run/session_sets.h"

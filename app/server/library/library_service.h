@@ -12,8 +12,8 @@
 #include "app/server/library/looker.h"
 #include "core/base/result.h"
 #include "core/rig/session.h"
-#include "library/catalogue.h"
-#include "library/edits.h"
+#include "library/catalogue/catalogue.h"
+#include "library/catalogue/edits.h"
 
 namespace weft::app {
 
@@ -46,7 +46,7 @@ class LibraryService {
   /// Something was made in a session: the next question looks.
   void expire() { at_home_->expire(); }
 
-  /// Changes what is said of a session (library/metadata.h) and remembers it for undo().
+  /// Changes what is said of a session (library/catalogue/metadata.h) and remembers it for undo().
   Result<library::Change> change(const std::filesystem::path& session, const Json& fields,
                                  const library::Provided& provided, const std::string& by);
   Result<library::Change> undo();

@@ -11,7 +11,7 @@
 #include "app/server/http/error_json.h"
 #include "app/server/rig/watched_camera.h"
 #include "core/describe/error_json.h"
-#include "library/session_files.h"
+#include "library/catalogue/session_files.h"
 
 namespace weft::app {
 namespace {

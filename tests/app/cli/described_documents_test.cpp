@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/import/photographs_import.h"
 #include "calibration/guide/photograph_set.h"
 #include "calibration/run/last_check.h"
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "exchange/presets/export_facts.h"
+#include "library/import/photographs_import.h"
 #include "material/run/map_set_facts.h"
 #include "material/run/rectify.h"
 #include "solve/report/reflectance_facts.h"

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/import/description.h"
 #include "calibration/run/board_photographs.h"
 #include "calibration/run/chart_pictures.h"
 #include "calibration/run/check.h"
@@ -18,6 +17,7 @@
 #include "capture/rig.h"
 #include "core/base/files.h"
 #include "exchange/presets/preset.h"
+#include "library/import/description.h"
 #include "material/assets/material_file.h"
 #include "material/run/recipe.h"
 #include "tests/core/image_io/scratch_folder.h"

@@ -9,13 +9,13 @@
 #include <string>
 #include <thread>
 
-#include "app/jobs/batch/plan_file.h"
 #include "app/server/api/batch_place.h"
 #include "core/base/files.h"
 #include "core/solve/solve.h"
+#include "library/run/plan_file.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/server/scripted_rig.h"
-#include "tests/batch/sample_plan.h"
+#include "tests/library/batch/sample_plan.h"
 
 namespace weft::app {
 namespace {

@@ -18,7 +18,7 @@
 #include "tests/app/server/api/json_schema.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/server/scripted_rig.h"
-#include "tests/batch/sample_plan.h"
+#include "tests/library/batch/sample_plan.h"
 #include "virtual_rig/control_socket.h"
 
 namespace weft::app {

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/describe/fields.h"
+#include "library/batch/outcome.h"
+#include "library/batch/plan.h"
+
+// What a batch came to.
+
+namespace weft::batch {
+
+/// A session of the plan and what became of it. Neither solved nor failed: missing.
+struct Row {
+  const Job* job = nullptr;
+  std::optional<Outcome> result = {};  ///< of kSolved, kThere or kFailed
+  std::optional<Outcome> lost = {};    ///< why the last attempt after it was none
+  int attempts = 0;
+
+  bool is_done() const { return result && result->is_done(); }
+  bool has_failed() const { return result && result->state == State::kFailed; }
+  bool is_missing() const { return !result; }
+};
+
+/// Sessions that have one cause in common.
+struct Cause {
+  std::string kind;  ///< name_of(ErrorKind)
+  std::string what;
+  int sessions = 0;
+  std::string example;  ///< the message of one
+};
+
+/// A calibration stands out whose left-out lights are off by this much more than is usual of the others.
+inline constexpr double kStandsOut = 1.5;
+
+/// Sessions that were solved by one calibration.
+struct ByCalibration {
+  std::string calibration, rig;
+  int sessions = 0;
+  int worse = 0;   ///< that have regressions
+  int warned = 0;  ///< whose lights do not fit, or are exchanged, dead or of another gain
+  std::optional<double> mean_turn_deg = {};
+  std::optional<double> left_out = {};        ///< median rms of how left-out lights are predicted, a share
+  std::optional<double> usual_left_out = {};  ///< the lower median of all calibrations, where this stands out
+};
+
+struct Summary {
+  int solved = 0, there = 0, failed = 0, missing = 0;
+  int second_attempts = 0;                    ///< sessions that were begun more than once
+  double seconds = 0, predicted_seconds = 0;  ///< of those solved, node-seconds
+  MeanError error, predicted_error;           ///< of those solved: as solves expect it, and as predicted
+  std::uint64_t peak_bytes = 0;
+  std::vector<std::size_t> barely_solved;   ///< rows that are done and have under kLeastSolved of a cloth
+  std::vector<std::size_t> warned;          ///< rows that are done and whose solves warn
+  std::vector<Cause> causes;                ///< of failed and missing sessions, the most frequent first
+  std::vector<std::size_t> changed;         ///< rows that were compared, the gravest first (is_graver)
+  int worse = 0;                            ///< of them with regressions
+  int unchanged = 0;                        ///< of them without a changed pixel
+  std::vector<ByCalibration> calibrations;  ///< the most suspect first
+  std::vector<int> missing_tasks;           ///< with a missing session, rising
+
+  /// How the night was foretold: predicted over taken seconds; 0 where nothing was solved or predicted.
+  double seconds_ratio() const { return seconds > 0 ? predicted_seconds / seconds : 0; }
+  bool is_whole() const { return failed == 0 && missing == 0; }
+};
+
+/// The rows of a plan, by what its tasks have written.
+std::vector<Row> rows_of(const Plan& plan, const std::map<std::string, History>& histories);
+
+Summary summarize(std::span<const Row> rows);
+
+/// What a batch came to, for programs.
+struct SummaryDocument {
+  Summary summary;
+  std::vector<Row> rows;
+};
+void describe(Fields& fields, SummaryDocument& document);
+
+}  // namespace weft::batch

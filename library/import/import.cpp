@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "library/import/import.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "capture/scan/journal.h"
+#include "core/base/files.h"
+#include "core/base/product.h"
+#include "library/import/photographs_import.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error cannot_link(const fs::path& to, int error_number) {
+  Error error = cannot_write(to, error_number);
+  error.remedy = "take --link copy: " + error.remedy;
+  return error;
+}
+
+/// A copy that nobody writes to, of the bytes that were read.
+Result<void> copy_frame(const fs::path& from, const fs::path& to, const std::string& sha256) {
+  std::error_code failed;
+  fs::copy_file(from, to, failed);
+  if (failed) return cannot_write(to, failed.value());
+  fs::permissions(to, fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read, failed);
+  if (failed) return cannot_write(to, failed.value());
+  const Result<std::string> digest = sha256_of_file(to);
+  if (!digest) return digest.error();
+  if (*digest == sha256) return {};
+  return Error{ErrorKind::kTryAgain, "photograph changed while it was copied", from.string(),
+               "its SHA-256 is not the one it was read with", "run the same import again"};
+}
+
+/// `to` becomes the file `from`, whose digest this is.
+Result<void> bring(const fs::path& from, const fs::path& to, FrameLink link, const std::string& sha256) {
+  switch (link) {
+    case FrameLink::kHard: {
+      // A link to a link is not what a session should hold.
+      std::error_code failed;
+      const fs::path file = fs::canonical(from, failed);
+      if (failed) return cannot_read(from, failed.value());
+      if (::link(file.c_str(), to.c_str()) != 0) return cannot_link(to, errno);
+      return {};
+    }
+    case FrameLink::kSymbolic: {
+      std::error_code failed;
+      fs::create_symlink(fs::absolute(from), to, failed);
+      return failed ? Result<void>(cannot_link(to, failed.value())) : Result<void>();
+    }
+    case FrameLink::kCopy:
+      break;
+  }
+  return copy_frame(from, to, sha256);
+}
+
+std::uint64_t bytes_of(const fs::path& file) {
+  std::error_code failed;
+  const auto bytes = fs::file_size(file, failed);
+  return failed ? 0 : bytes;
+}
+
+Result<void> make_session(const PlannedSession& planned, const ImportPlan& plan, const JobContext& context,
+                          double from, double to) {
+  capture::remove_abandoned(planned.session.folder);
+  PartialFolder aside(planned.session.folder);
+  std::uint64_t bytes = std::uint64_t{1} << 20;
+  for (const SourceFrame& frame : planned.frames)
+    bytes += plan.link == FrameLink::kCopy ? bytes_of(frame.source.file) : 0;
+  if (Result<void> ok = begin(aside, bytes); !ok) return ok;
+  if (Result<void> ok = make_writable_folder(aside.path() / "raw"); !ok) return ok;
+  Session session = planned.session;
+  session.folder = aside.path();
+  for (std::size_t f = 0; f < planned.frames.size(); ++f) {
+    if (context.stop.stop_requested()) return interrupted();
+    const fs::path& file = planned.frames[f].source.file;
+    Result<std::string> digest = sha256_of_file(file);
+    if (!digest) return std::move(digest).error();
+    Shot& shot = session.shots[f];
+    if (Result<void> ok = bring(file, session.path_of(shot), plan.link, *digest); !ok) return ok;
+    shot.sha256 = std::move(*digest);
+    const double share = static_cast<double>(f + 1) / static_cast<double>(planned.frames.size());
+    context.progress("import", from + share * (to - from));
+  }
+  std::error_code failed;
+  fs::copy(plan.calibration, session.calibration_folder(), fs::copy_options::recursive, failed);
+  if (failed) return cannot_write(session.calibration_folder(), failed.value());
+  if (Result<void> ok = write_session(session); !ok) return ok;
+  return aside.publish();
+}
+
+Result<void> make_photographs(const PlannedPhotographs& planned, const ImportPlan& plan) {
+  capture::remove_abandoned(planned.folder);
+  PartialFolder aside(planned.folder);
+  std::uint64_t bytes = std::uint64_t{1} << 20;
+  for (const fs::path& file : planned.photos.files)
+    bytes += plan.link == FrameLink::kCopy ? bytes_of(file) : 0;
+  if (Result<void> ok = begin(aside, bytes); !ok) return ok;
+  const PhotographTexts texts = texts_of(planned);
+  const std::vector<std::string> names = stored_names(planned.photos);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string& sha256 = texts.facts.photographs[i].sha256;
+    if (Result<void> ok = bring(planned.photos.files[i], aside.path() / names[i], plan.link, sha256); !ok)
+      return ok;
+  }
+  if (!planned.photos.mask.empty()) {
+    Result<void> ok = bring(planned.photos.mask, aside.path() / "mask.png", plan.link, texts.facts.mask);
+    if (!ok) return ok;
+  }
+  const std::array<std::pair<const char*, const std::string*>, 3> files = {
+      {{"filenames.txt", &texts.names},
+       {"light_directions.txt", &texts.directions},
+       {"light_intensities.txt", &texts.intensities}}};
+  for (const auto& [name, text] : files)
+    if (Result<void> ok = write_file(aside.path() / name, *text); !ok) return ok;
+  if (Result<void> ok = write_json(aside.path() / "photographs.json", json_of(texts.facts)); !ok) return ok;
+  return aside.publish();
+}
+
+}  // namespace
+
+Result<void> run_import(const ImportPlan& plan, const JobContext& context) {
+  if (plan.count(ImportState::kNew) == 0) return {};
+  if (Result<void> ok = make_writable_folder(plan.archive); !ok) return ok;
+  const double share = 1 / static_cast<double>(plan.sessions.size() + plan.photographs.size());
+  for (std::size_t s = 0; s < plan.sessions.size(); ++s) {
+    if (plan.sessions[s].state != ImportState::kNew) continue;
+    const double from = static_cast<double>(s) * share;
+    if (Result<void> ok = make_session(plan.sessions[s], plan, context, from, from + share); !ok) return ok;
+  }
+  for (const PlannedPhotographs& planned : plan.photographs) {
+    if (planned.state != ImportState::kNew) continue;
+    if (context.stop.stop_requested()) return interrupted();
+    if (Result<void> ok = make_photographs(planned, plan); !ok) return ok;
+  }
+  context.progress("import", 1);
+  return {};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/job.h"
+#include "core/base/json_document.h"
+#include "core/base/result.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
+#include "library/import/led_decision.h"
+#include "library/import/source_folders.h"
+#include "solve/input/photo_input.h"
+
+// Folders of photographs that other rigs and programs left, as sessions of weft: what would be made of them.
+
+namespace weft::app {
+
+/// How a session comes to its frames.
+enum class FrameLink {
+  kHard,      ///< another name of the same file
+  kCopy,      ///< a file of its own, read-only, verified
+  kSymbolic,  ///< a link to where the file lies now
+};
+inline constexpr std::array<const char*, 3> kFrameLinkNames = {"hard", "copy", "symbolic"};
+
+struct ImportOptions {
+  std::vector<std::string> folders;
+  std::filesystem::path rig;          ///< rig file; its calibration, sessions and height where none is named
+  std::filesystem::path calibration;  ///< folder
+  std::string pattern;                ///< of names (name_pattern.h); empty: none
+  FrameOrder order = FrameOrder::kAuto;
+  FrameLink link = FrameLink::kHard;
+  std::filesystem::path archive;  ///< folder of sessions; empty: the rig's
+  double gap_s = 60;
+  bool takes_missing = false;
+  std::optional<double> cloth_height_mm;  ///< where no description says one
+};
+
+/// What is to become of one group of photographs.
+enum class ImportState {
+  kNew,      ///< it will be made
+  kThere,    ///< it is there, of the same frames
+  kRefused,  ///< `refusal` says why
+};
+inline constexpr std::array<const char*, 3> kImportStateNames = {"new", "there", "refused"};
+
+/// One session. `frames`, and LEDs and the rest of `decision`, are in order of capture.
+struct PlannedSession {
+  ImportState state = ImportState::kNew;
+  std::filesystem::path source;  ///< folder of its frames
+  Session session;               ///< as it will be written, but for digests; its folder is where
+  std::vector<SourceFrame> frames;
+  LedDecision decision;
+  std::vector<std::string> warnings;
+  std::optional<Error> refusal;
+};
+
+/// Photographs under distant lights: a folder for `weft solve --photos`.
+struct PlannedPhotographs {
+  ImportState state = ImportState::kNew;
+  std::filesystem::path source;  ///< light file, or folder
+  std::filesystem::path folder;  ///< that will be made
+  PhotoPlan photos;
+  std::optional<Error> refusal;
+};
+
+/// All that will be done, and nothing done yet.
+struct ImportPlan {
+  std::filesystem::path archive;
+  std::filesystem::path calibration;  ///< folder; empty where there are no sessions
+  std::string calibration_id, rig;
+  FrameLink link = FrameLink::kHard;
+  std::vector<PlannedSession> sessions;
+  std::vector<PlannedPhotographs> photographs;
+  std::vector<LeftOver> left_over;
+
+  std::size_t count(ImportState state) const;
+  /// The first refusal; nothing where all can be imported.
+  std::optional<Error> first_refusal() const;
+};
+
+/// Looks at all files, decodes every frame once, and decides. What speaks against one session is its refusal;
+/// what speaks against all is the error: kUsage (nothing names a calibration or an archive, the pattern),
+/// kNoInput (a folder that is not there, no photograph in any), kBadData (a calibration without lights, of
+/// another rig), kCannotCreate (hard links to another disk). Reports the phases "look" and "read".
+Result<ImportPlan> plan_import(const ImportOptions& options, const JobContext& context);
+
+/// {"archive", "calibration", "rig", "sessions", "photographs", "left_over"}.
+Json json_of(const ImportPlan& plan);
+
+}  // namespace weft::app

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "library/import/photographs_import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "core/base/files.h"
+#include "core/base/text.h"
+#include "core/describe/field_json.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSchema = "weft.photographs";
+
+PlannedPhotographs planned_by(const PhotoOptions& options, const std::string& name, const fs::path& archive) {
+  PlannedPhotographs planned;
+  planned.source = options.light_file.empty() ? options.folder : options.light_file;
+  planned.folder = archive / (file_name_of(name, "photographs") + ".photos");
+  Result<PhotoPlan> photos = plan_photos(options);
+  if (!photos) {
+    planned.state = ImportState::kRefused;
+    planned.refusal = std::move(photos).error();
+    return planned;
+  }
+  planned.photos = std::move(*photos);
+  return planned;
+}
+
+void look_for_folder(PlannedPhotographs& planned) {
+  if (planned.refusal || !is_there(planned.folder)) return;
+  const Result<Json> stored = read_json(planned.folder / "photographs.json", kSchema, 1);
+  if (stored && *stored == json_of(texts_of(planned).facts)) {
+    planned.state = ImportState::kThere;
+    return;
+  }
+  planned.state = ImportState::kRefused;
+  planned.refusal =
+      Error{ErrorKind::kCannotCreate, "another folder of that name is there", planned.folder.string(),
+            "folders of photographs are never overwritten", "import into another archive with -o"};
+}
+
+}  // namespace
+
+std::vector<PlannedPhotographs> plan_photographs(const SourceFolders& found, const fs::path& archive) {
+  std::vector<PlannedPhotographs> all;
+  for (const fs::path& file : found.light_files) {
+    const fs::path folder = file.parent_path();
+    const bool is_alone = std::ranges::count(found.light_files, folder, &fs::path::parent_path) == 1;
+    std::string name = folder.filename().string();
+    if (!is_alone) name += "_" + file.stem().string();
+    PhotoOptions options;
+    options.light_file = file;
+    all.push_back(planned_by(options, name, archive));
+  }
+  for (const fs::path& folder : found.photo_folders) {
+    PhotoOptions options;
+    options.folder = folder;
+    all.push_back(planned_by(options, folder.filename().string(), archive));
+  }
+  std::set<fs::path> taken;
+  for (PlannedPhotographs& planned : all) {
+    const std::string stem = planned.folder.stem().string();
+    for (int i = 2; !taken.insert(planned.folder).second; ++i)
+      planned.folder = archive / fmt::format("{}_{}.photos", stem, i);
+    look_for_folder(planned);
+  }
+  return all;
+}
+
+std::vector<std::string> stored_names(const PhotoPlan& photos) {
+  static const std::set<std::string> kOwn = {"filenames.txt", "light_directions.txt", "light_intensities.txt",
+                                             "mask.png", "photographs.json"};
+  std::vector<std::string> names;
+  std::set<std::string> taken = kOwn;
+  bool is_each_another = true;
+  for (const fs::path& file : photos.files) {
+    names.push_back(file.filename().string());
+    is_each_another = taken.insert(names.back()).second && is_each_another;
+  }
+  for (std::size_t i = 0; !is_each_another && i < names.size(); ++i)
+    names[i] = fmt::format("{:03}_{}", i + 1, names[i]);
+  return names;
+}
+
+void describe(Fields& fields, PhotographFacts& f) {
+  fields.value({"from", "The folder or light file that they were imported of", {}, kMustSay}, f.from);
+  fields.list({"photographs", "In the order of their lights", {}, kMustSay}, f.photographs);
+  fields.value({.name = "transfer",
+                .says = "How their values follow light; auto where they differ",
+                .need = kMustSay,
+                .words = {"auto", "linear", "srgb"}},
+               f.transfer);
+  fields.value({"mask", "SHA-256 of their mask, where there is one", {}, kUnlessEmpty}, f.mask);
+}
+
+Json json_of(const PhotographFacts& facts) {
+  Json json = {{"schema", fmt::format("{}/1", kSchema)}};
+  write_fields(json, facts);
+  return json;
+}
+
+PhotographTexts texts_of(const PlannedPhotographs& planned) {
+  const PhotoPlan& photos = planned.photos;
+  const std::vector<std::string> names = stored_names(photos);
+  PhotographTexts texts;
+  texts.facts = {planned.source.string(), photos.input.photographs, photos.input.transfer, photos.input.mask};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& [direction, irradiance] = photos.lights.lights[i];
+    texts.names += names[i] + "\n";
+    texts.directions += fmt::format("{} {} {}\n", direction.x, direction.y, direction.z);
+    texts.intensities += fmt::format("{} {} {}\n", irradiance[0], irradiance[1], irradiance[2]);
+    texts.facts.photographs[i].file = names[i];
+  }
+  return texts;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "library/run/session_work.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
+#include "core/rig/session.h"
+#include "core/solve/solve_record.h"
+#include "library/run/follow_ups.h"
+#include "library/run/lean.h"
+#include "library/run/solve_change.h"
+#include "solve/run/solve.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The calibration that it is solved by, in place of its own; refuses what is not as planned.
+Result<fs::path> check_session(const SessionWork& work) {
+  const fs::path& folder = work.session;
+  if (folder == work.job.session && !is_there(work.header->archive)) {
+    return Error{ErrorKind::kTryAgain, "archive is not there", work.header->archive,
+                 "this machine does not see it", "mount it, then run the same command again"};
+  }
+  if (!is_there(folder / "session.json")) {
+    return Error{ErrorKind::kNoInput, "session is not where the plan has it", folder.string(),
+                 "there is no session.json", "bring it back, or plan again"};
+  }
+  const Result<Session> session = read_session(folder);
+  if (!session) return session.error();
+  if (batch::digest_of_session(session->document) != work.job.digest) {
+    return Error{ErrorKind::kBadData, "session was changed since the plan", folder.string(),
+                 "its session.json differs in what a solve depends on", "plan again"};
+  }
+  const auto& named = work.header->calibrations;
+  const auto found = std::ranges::find(named, work.job.calibration, &batch::NamedCalibration::id);
+  const fs::path own = found == named.end() ? fs::path() : fs::path(found->folder);
+  const fs::path used = own.empty() ? session->calibration_folder() : own;
+  const Result<Calibration> calibration = read_calibration(used);
+  if (!calibration) return calibration.error();
+  if (calibration->id == work.job.calibration) return own;
+  return Error{ErrorKind::kBadData, "calibration was changed since the plan", used.string(),
+               fmt::format("its id is {:.12}, the plan names {:.12}", calibration->id, work.job.calibration),
+               "plan again"};
+}
+
+// The whole solve, where it belongs.
+Result<SolveReport> solve_whole(const SessionOptions& input, SolveOptions options, const SessionWork& work,
+                                const JobContext& context) {
+  options.output = work.solves / work.job.solve;
+  Result<SolveReport> report = solve_session(input, options, context);
+  const bool was_second = !report && report.error().kind == ErrorKind::kCannotCreate &&
+                          is_there(options.output / kSolveProduct.document);
+  return was_second ? solve_session(input, options, context) : std::move(report);
+}
+
+// Only what is kept, made of a whole solve aside.
+Result<SolveReport> solve_lean(const SessionOptions& input, SolveOptions options, const SessionWork& work,
+                               const JobContext& context) {
+  const Product target = {kSolveProduct, work.job.solve, work.solves / work.job.solve};
+  const Result<std::optional<Json>> finished = find_finished(target);
+  if (!finished) return finished.error();
+  if (*finished) {
+    Result<SolveFacts> facts = solve_facts_from_json(**finished, target.folder.string());
+    if (!facts) return std::move(facts).error();
+    return SolveReport{target.folder, true, std::move(*facts), {}, {}, {}};
+  }
+  PartialFolder partial(target.folder);
+  options.output = partial.path() / "solve";
+  Result<SolveReport> report = solve_session(input, options, context);
+  if (!report) return report;
+  if (Result<void> ok = make_lean(options.output, work.product, target.id); !ok) return std::move(ok).error();
+  Result<void> published = publish_folder(options.output, target.folder);
+  if (!published && !is_there(target.folder / kSolveProduct.document)) return std::move(published).error();
+  report->folder = target.folder;
+  report->facts.id = target.id;
+  return report;
+}
+
+void add_facts_of(const SolveReport& report, batch::Outcome& outcome) {
+  const SolveFacts& facts = report.facts;
+  outcome.state = report.was_there ? batch::State::kThere : batch::State::kSolved;
+  outcome.solve = facts.id;
+  outcome.folder = report.folder.string();
+  outcome.read_s = report.seconds.read;
+  outcome.solve_s = report.seconds.solve;
+  outcome.expected_deg = report.expected.total_deg;
+  const SigmaFacts sigma = facts.sigma_normal_deg.value_or(SigmaFacts());
+  outcome.sigma_deg = sigma.median.value_or(0);
+  outcome.sigma_p95_deg = sigma.p95.value_or(0);
+  outcome.unsolved = static_cast<double>(facts.status.with(kNoSolution)) /
+                     static_cast<double>(std::max<std::int64_t>(1, facts.size.pixels()));
+  outcome.solved = facts.taken ? facts.taken->solved : 1 - outcome.unsolved;
+  if (facts.check) outcome.left_out = facts.check->all.rms;
+  for (const Verdict& warning : facts.warnings) outcome.warnings.push_back(warning.name);
+}
+
+void compare_with_before(const SessionWork& work, const JobContext& context, batch::Outcome& outcome) {
+  const std::string& before = work.job.before;
+  if (before.empty() || before == outcome.solve) return;
+  const fs::path folder = work.session / "solve" / before;
+  if (!is_there(folder / kSolveProduct.document)) {
+    outcome.no_change = "the solve before is gone";
+    return;
+  }
+  Stopwatch watch;
+  const Result<batch::Change> change = compare_solves(folder, outcome.folder, context.threads);
+  outcome.compare_s = watch.lap();
+  if (change) {
+    outcome.change = *change;
+  } else {
+    outcome.no_change = change.error().message();
+  }
+}
+
+}  // namespace
+
+batch::Outcome ended_by(const SessionWork& work, Error error) {
+  // Readers of images and LibRaw catch it, and what they then say is of a file.
+  if (error.why.find("bad_alloc") != std::string::npos)
+    error = {ErrorKind::kTryAgain, "out of memory", work.session.string(), error.what,
+             "run it with more --memory, or on a larger machine"};
+  batch::Outcome outcome;
+  outcome.plan = work.header->id;
+  outcome.session = work.job.session;
+  outcome.state = batch::is_of_session(error.kind) ? batch::State::kFailed : batch::State::kLost;
+  outcome.error = std::move(error);
+  return outcome;
+}
+
+batch::Outcome work_on_session(const SessionWork& work, const JobContext& context) {
+  Stopwatch watch;
+  const Result<fs::path> calibration = check_session(work);
+  if (!calibration) return ended_by(work, calibration.error());
+  SolveOptions options;
+  options.method = work.job.quality;
+  options.plan = work.header->id;
+  options.compression = compression_of(work.product);
+  const batch::Forecast& forecast = work.job.forecast;
+  if (forecast.solve_seconds > 0)
+    options.foretold = SolvePrice{forecast.solve_seconds, forecast.degrees, forecast.solved, {}};
+  const SessionOptions input = {.folder = work.session, .calibration = *calibration, .leds = {}};
+  const Result<SolveReport> report = work.product.is_whole() ? solve_whole(input, options, work, context)
+                                                             : solve_lean(input, options, work, context);
+  if (!report) return ended_by(work, report.error());
+  batch::Outcome outcome;
+  outcome.plan = work.header->id;
+  outcome.session = work.job.session;
+  add_facts_of(*report, outcome);
+  const SolveOfSession solved = {work.session, work.solves / outcome.solve, *calibration};
+  Result<std::vector<std::string>> made = make_follow_ups(solved, work.product, context);
+  if (!made) return ended_by(work, std::move(made).error());
+  outcome.made = std::move(*made);
+  compare_with_before(work, context, outcome);
+  outcome.seconds = watch.lap();
+  return outcome;
+}
+
+}  // namespace weft::app
