@@ -14,7 +14,7 @@
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/server/api/requests.h"
+#include "app/server/api/bodies/requests.h"
 #include "core/describe/error_json.h"
 #include "core/rig/exposure_words.h"
 

@@ -16,7 +16,7 @@
 #include "app/cli/rig_owner.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/server/api/scan_body.h"
+#include "app/server/api/bodies/scan_body.h"
 #include "app/server/http/error_json.h"
 #include "app/server/rig/rig_lock.h"
 #include "capture/rig.h"

@@ -8,10 +8,10 @@
 
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
+#include "app/cli/schemas/document_schemas.h"
+#include "app/cli/schemas/documents_page.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/schemas/document_schemas.h"
-#include "app/jobs/schemas/documents_page.h"
 #include "core/base/files.h"
 #include "core/describe/fields.h"
 #include "simulator/scene/scene_page.h"

@@ -9,11 +9,11 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "app/jobs/torture_request.h"
 #include "core/base/files.h"
 #include "core/base/temporary_folder.h"
 #include "simulator/scene/scene.h"
 #include "simulator/simulate.h"
+#include "simulator/torture_request.h"
 #include "solve/run/solve.h"
 
 namespace weft::app {

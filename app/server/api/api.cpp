@@ -4,11 +4,11 @@
 #include <string_view>
 #include <utility>
 
+#include "app/server/api/bodies/job_kinds.h"
+#include "app/server/api/bodies/requests.h"
+#include "app/server/api/bodies/scan_body.h"
 #include "app/server/api/descriptions.h"
-#include "app/server/api/job_kinds.h"
 #include "app/server/api/reply_schemas.h"
-#include "app/server/api/requests.h"
-#include "app/server/api/scan_body.h"
 #include "app/server/api/short_schema.h"
 #include "core/base/files.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "app/jobs/view/pixel_table.h"
+#include "app/server/view/pixel_table.h"
 #include "core/base/result.h"
 #include "core/solve/solve.h"
 

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <string>
 
-#include "app/jobs/view/pyramid.h"
+#include "app/server/view/pyramid.h"
 #include "core/base/result.h"
 
 namespace weft::app {

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "app/server/api/job_arguments.h"
-#include "app/server/api/job_kinds.h"
-#include "app/server/api/scan_body.h"
+#include "app/server/api/bodies/job_arguments.h"
+#include "app/server/api/bodies/job_kinds.h"
+#include "app/server/api/bodies/scan_body.h"
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "core/toml/field_toml.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/schemas/documents_page.h"
+#include "app/cli/schemas/documents_page.h"
 
 #include <gtest/gtest.h>
 
-#include "app/jobs/schemas/document_schemas.h"
+#include "app/cli/schemas/document_schemas.h"
 #include "core/base/files.h"
 #include "tests/core/places.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "app/server/api/batch_place.h"
+#include "app/server/api/bodies/batch_place.h"
 #include "core/base/files.h"
 #include "core/solve/solve.h"
 #include "library/run/plan_file.h"

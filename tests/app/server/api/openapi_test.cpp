@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "app/server/api/batch_place.h"
+#include "app/server/api/bodies/batch_place.h"
 #include "app/server/http/error_json.h"
 #include "core/base/files.h"
 #include "exchange/presets/export_facts.h"

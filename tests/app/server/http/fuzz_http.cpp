@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/server/api/scan_body.h"
+#include "app/server/api/bodies/scan_body.h"
 #include "app/server/http/conditions.h"
 #include "app/server/http/cookies.h"
 #include "app/server/http/error_json.h"

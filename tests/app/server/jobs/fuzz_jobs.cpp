@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "app/server/api/job_body.h"
-#include "app/server/api/scan_body.h"
+#include "app/server/api/bodies/job_body.h"
+#include "app/server/api/bodies/scan_body.h"
 #include "app/server/jobs/job.h"
 #include "core/base/temporary_folder.h"
 
