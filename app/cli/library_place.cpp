@@ -9,6 +9,7 @@
 
 #include "app/cli/terminal.h"
 #include "core/base/files.h"
+#include "core/base/sha256.h"
 
 namespace weft::app {
 

@@ -28,6 +28,7 @@
 #include "capture/scan/scan.h"
 #include "core/base/files.h"
 #include "core/base/job.h"
+#include "core/base/sha256.h"
 #include "core/base/statistics.h"
 #include "core/base/temporary_folder.h"
 #include "core/describe/error_json.h"

@@ -20,6 +20,7 @@
 #include "capture/camera/worker_lines.h"
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
+#include "core/base/sha256.h"
 #include "core/describe/error_json.h"
 
 namespace weft::capture {

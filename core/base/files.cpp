@@ -3,45 +3,24 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <openssl/evp.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <memory>
 #include <vector>
 
 #include "core/base/descriptor.h"
 #include "core/base/partial_name.h"
+#include "core/base/sha256.h"
 
 namespace weft {
 namespace {
 
 namespace fs = std::filesystem;
-
-class Sha256 {
- public:
-  Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
-    EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
-  }
-  void add(const void* data, std::size_t bytes) { EVP_DigestUpdate(context_.get(), data, bytes); }
-  std::string hex() {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest = {};
-    unsigned int length = 0;
-    EVP_DigestFinal_ex(context_.get(), digest.data(), &length);
-    std::string text;
-    for (unsigned int i = 0; i < length; ++i) text += fmt::format("{:02x}", digest[i]);
-    return text;
-  }
-
- private:
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
-};
 
 bool write_all(int fd, std::string_view bytes) {
   while (!bytes.empty()) {
@@ -219,12 +198,6 @@ Result<std::string> sha256_of_file(const fs::path& file) {
     if (n == 0) return digest.hex();
     digest.add(block.data(), static_cast<std::size_t>(n));
   }
-}
-
-std::string sha256_of(std::string_view text) {
-  Sha256 digest;
-  digest.add(text.data(), text.size());
-  return digest.hex();
 }
 
 std::uint64_t free_disk_bytes(const fs::path& path) {

@@ -60,8 +60,6 @@ class PartialFolder {
 
 /// SHA-256 of a file's bytes as 64 hexadecimal digits, read in blocks.
 Result<std::string> sha256_of_file(const std::filesystem::path& file);
-/// SHA-256 of a text as 64 hexadecimal digits.
-std::string sha256_of(std::string_view text);
 
 /// Bytes free for this user on the disk that holds `path` or its nearest existing parent.
 std::uint64_t free_disk_bytes(const std::filesystem::path& path);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/product.h"
+#include "core/base/sha256.h"
 
 #include <fmt/format.h>
 

@@ -9,6 +9,7 @@
 
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
+#include "core/base/sha256.h"
 #include "core/describe/field_json.h"
 #include "core/rig/calibration_parts.h"
 #include "core/rig/same_camera.h"

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/base/files.h"
+#include "core/base/sha256.h"
 #include "exchange/document.h"
 #include "exchange/export/textured.h"
 #include "exchange/gltf/glb.h"

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/files.h"
+#include "core/base/sha256.h"
 #include "core/base/text.h"
 #include "core/image_io/image_io.h"
 #include "exchange/export/textured.h"

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "core/base/files.h"
+#include "core/base/sha256.h"
 #include "core/describe/field_json.h"
 
 namespace weft::batch {

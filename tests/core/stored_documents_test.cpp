@@ -12,6 +12,7 @@
 
 #include "core/base/files.h"
 #include "core/base/product.h"
+#include "core/base/sha256.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
 #include "core/solve/solve.h"

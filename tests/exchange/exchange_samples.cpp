@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/files.h"
+#include "core/base/sha256.h"
 #include "exchange/gltf/glb.h"
 #include "exchange/materialx/materialx.h"
 #include "exchange/u3m/u3m.h"

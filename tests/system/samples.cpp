@@ -11,7 +11,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "core/base/files.h"
+#include "core/base/sha256.h"
 #include "core/rig/session.h"
 #include "simulator/simulate.h"
 #include "tests/core/places.h"

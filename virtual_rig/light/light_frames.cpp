@@ -21,6 +21,7 @@
 
 #include "core/base/descriptor.h"
 #include "core/base/files.h"
+#include "core/base/sha256.h"
 #include "core/image/raw_frame.h"
 #include "simulator/build_passes.h"
 #include "simulator/camera/defects.h"

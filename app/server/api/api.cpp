@@ -10,7 +10,7 @@
 #include "app/server/api/descriptions.h"
 #include "app/server/api/reply_schemas.h"
 #include "app/server/api/short_schema.h"
-#include "core/base/files.h"
+#include "core/base/sha256.h"
 
 namespace weft::app {
 namespace {

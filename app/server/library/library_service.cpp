@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/files.h"
+#include "core/base/sha256.h"
 #include "library/catalogue/session_name.h"
 
 namespace weft::app {

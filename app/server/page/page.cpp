@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/base/files.h"
+#include "core/base/sha256.h"
 
 namespace weft::app {
 namespace {

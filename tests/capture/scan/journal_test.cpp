@@ -12,6 +12,7 @@
 #include <set>
 
 #include "core/base/files.h"
+#include "core/base/sha256.h"
 #include "tests/capture/scan/files_under.h"
 
 namespace weft::capture {

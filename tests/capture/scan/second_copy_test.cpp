@@ -11,6 +11,7 @@
 #include <set>
 
 #include "core/base/files.h"
+#include "core/base/sha256.h"
 #include "tests/capture/scan/files_under.h"
 
 // A disk that garbles what it takes: the C++ library copies files by this call.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/files.h"
+#include "core/base/sha256.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "core/base/files.h"
+#include "core/base/sha256.h"
 #include "tests/core/image_io/scratch_folder.h"
 #include "tests/core/places.h"
 

@@ -15,8 +15,8 @@
 #include "calibration/run/board_photographs.h"
 #include "calibration/run/chart_pictures.h"
 #include "calibration/run/sheet_files.h"
-#include "core/base/files.h"
 #include "core/base/number.h"
+#include "core/base/sha256.h"
 #include "core/describe/field_json.h"
 #include "library/catalogue/session_name.h"
 

@@ -11,8 +11,8 @@
 
 #include "app/server/api/bodies/library_materials.h"
 #include "app/server/api/routes/tile_query.h"
-#include "core/base/files.h"
 #include "core/base/iso_time.h"
+#include "core/base/sha256.h"
 #include "core/describe/field_json.h"
 #include "core/rig/camera.h"
 #include "core/rig/lights.h"

@@ -14,6 +14,7 @@
 #include "app/server/api/bodies/batch_place.h"
 #include "app/server/http/error_json.h"
 #include "core/base/files.h"
+#include "core/base/sha256.h"
 #include "exchange/presets/export_facts.h"
 #include "tests/app/server/api/json_schema.h"
 #include "tests/app/server/raw_client.h"
