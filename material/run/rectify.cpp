@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using material::TableGrid;
 
-constexpr int kVersion = 3;  // raised whenever the bytes of a map may change
+constexpr int kRectifiedVersion = 3;  // raised whenever the bytes of a map may change
 constexpr const char* kFilter =
     "cubic convolution, a = -1/2 (Keys 1981), stretched to the grid where it is coarser than the frame";
 
@@ -239,7 +239,7 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
       *camera, {options.mm_per_pixel.value_or(0), session->cloth_height_mm, options.turn_deg});
   if (!grid) return grid.error();
 
-  const Json inputs = {{"version", kVersion},
+  const Json inputs = {{"version", kRectifiedVersion},
                        {"solve", solve->id},
                        {"calibration", calibration->id},
                        {"mm_per_pixel", grid->mm_per_pixel},

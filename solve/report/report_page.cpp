@@ -16,7 +16,7 @@
 namespace weft::app {
 namespace {
 
-double number(double value, double otherwise = 0) {
+double finite_or(double value, double otherwise = 0) {
   return std::isfinite(value) ? value : otherwise;
 }
 
@@ -54,7 +54,7 @@ std::string all_is_well(const SolveReportFacts& report) {
   return fmt::format(
       "Nothing stands out: half of the pixels agree with the model to {} of the albedo or better, and no "
       "light contradicts its calibration.",
-      percent_text(number(report.residual_explained)));
+      percent_text(finite_or(report.residual_explained)));
 }
 
 report::Section residuals(const SolveReportFacts& report) {
@@ -62,7 +62,7 @@ report::Section residuals(const SolveReportFacts& report) {
   report::Table table;
   for (const LightFacts& light : report.lights) {
     const int n = light.light;
-    const double size = number(light.residual_median);
+    const double size = finite_or(light.residual_median);
     if (alarm.count(n) != 0) table.alarms.insert(table.rows.size());
     table.rows.push_back({fmt::format("{} {}", light_noun(report), n), percent_text(size)});
     table.bars.push_back(size);
@@ -98,10 +98,10 @@ report::Section sigma_map(const SolveReportFacts& report) {
       .title = "How well the lights fix the normal", .figures = {{"", std::move(map)}}, .is_half = true};
   section.note = fmt::format(
       "Median {:.3g}°, 95 percent below {:.3g}°. Both hold for the {} of the cloth that has a normal.",
-      sigma.median, number(sigma.p95), share_in_words(sigma.solved));
-  if (const LightCondition& condition = report.condition; number(condition.median) > 0) {
+      sigma.median, finite_or(sigma.p95), share_in_words(sigma.solved));
+  if (const LightCondition& condition = report.condition; finite_or(condition.median) > 0) {
     section.note += fmt::format(" Condition number of all lights {:.2f}, at worst {:.2f}.", condition.median,
-                                number(condition.worst, INFINITY));
+                                finite_or(condition.worst, INFINITY));
   }
   return section;
 }
@@ -131,13 +131,13 @@ report::Section light_table(const SolveReportFacts& report) {
     if (report.lights.size() > 24 && !is_named) continue;
     if (is_named) table.alarms.insert(table.rows.size());
     table.rows.push_back({fmt::format("{} {}", light_noun(report), n),
-                          percent_text(number(light.residual_rms)),
-                          fmt::format("{:+.2f} %", 100 * number(light.residual_mean)),
-                          fmt::format("{:.1f} %", 100 * number(light.gain, 1)),
-                          percent_text(number(light.shadowed)), percent_text(number(light.saturated)),
-                          percent_text(number(light.missing)), percent_text(number(light.outlier)),
-                          fmt::format("{:.1f} % ({:.0f} %)", 100 * number(light.gradient),
-                                      100 * number(light.gradient_share))});
+                          percent_text(finite_or(light.residual_rms)),
+                          fmt::format("{:+.2f} %", 100 * finite_or(light.residual_mean)),
+                          fmt::format("{:.1f} %", 100 * finite_or(light.gain, 1)),
+                          percent_text(finite_or(light.shadowed)), percent_text(finite_or(light.saturated)),
+                          percent_text(finite_or(light.missing)), percent_text(finite_or(light.outlier)),
+                          fmt::format("{:.1f} % ({:.0f} %)", 100 * finite_or(light.gradient),
+                                      100 * finite_or(light.gradient_share))});
   }
   return {
       .title = "Light by light",
@@ -151,11 +151,11 @@ report::Section light_table(const SolveReportFacts& report) {
 report::Section registration(const SolveReportFacts& report) {
   report::Table table = {{"", "right, px", "down, px", "turn", "sigma, px", "costs", ""}};
   for (const RegisteredShot& shot : report.registration) {
-    table.rows.push_back({fmt::format("LED {}", shot.led), fmt::format("{:+.3f}", number(shot.dx_px)),
-                          fmt::format("{:+.3f}", number(shot.dy_px)),
-                          fmt::format("{:+.4f}°", number(shot.turn_deg)),
-                          fmt::format("{:.3f}", number(shot.sigma_px)),
-                          fmt::format("{:.3f}°", number(shot.cost_deg)), shot.verdict});
+    table.rows.push_back({fmt::format("LED {}", shot.led), fmt::format("{:+.3f}", finite_or(shot.dx_px)),
+                          fmt::format("{:+.3f}", finite_or(shot.dy_px)),
+                          fmt::format("{:+.4f}°", finite_or(shot.turn_deg)),
+                          fmt::format("{:.3f}", finite_or(shot.sigma_px)),
+                          fmt::format("{:.3f}°", finite_or(shot.cost_deg)), shot.verdict});
   }
   return {.title = "How the cloth lay in each shot", .table = std::move(table)};
 }
@@ -169,8 +169,8 @@ report::Section conditions(const SolveReportFacts& report) {
 report::Section gates(const SolveReportFacts& report) {
   report::Table table = {{"stage", "measured", "limit", "verdict"}};
   for (const GateFacts& gate : report.gates) {
-    table.rows.push_back({gate.name, fmt::format("{:.3g} {}", number(gate.value), gate.unit),
-                          fmt::format("{:.3g} {}", number(gate.limit), gate.unit),
+    table.rows.push_back({gate.name, fmt::format("{:.3g} {}", finite_or(gate.value), gate.unit),
+                          fmt::format("{:.3g} {}", finite_or(gate.limit), gate.unit),
                           gate.is_over ? "over" : "under"});
   }
   return {.title = "Gates", .table = std::move(table), .is_half = true};

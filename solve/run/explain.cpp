@@ -311,7 +311,7 @@ Error nothing_fits(const Ladder& ladder, const LevelWish& wish) {
           remedy + "; --explain lists all levels"};
 }
 
-Error nothing_solved(const Ladder& ladder) {
+Error no_level_solved(const Ladder& ladder) {
   const auto most =
       std::ranges::max_element(ladder.levels, {}, [](const LevelPrice& level) { return level.error.solved; });
   return {
@@ -343,7 +343,7 @@ Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& opt
 }
 
 Result<std::size_t> choose_level(const Ladder& ladder, const LevelWish& wish) {
-  if (std::ranges::none_of(ladder.levels, &LevelPrice::is_solved)) return nothing_solved(ladder);
+  if (std::ranges::none_of(ladder.levels, &LevelPrice::is_solved)) return no_level_solved(ladder);
   std::vector<std::size_t> fitting;
   for (const std::size_t i : from_cheapest(ladder)) {
     const LevelPrice& level = ladder.levels[i];

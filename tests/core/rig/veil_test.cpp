@@ -10,7 +10,7 @@ namespace weft {
 namespace {
 
 constexpr Size kFrame = {300, 200};
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFull = std::numeric_limits<float>::infinity();
 
 VeilOverFrame veil_of(const Image<float>& seen, const Veil& veil) {
   return {veil, seen.size(), CfaPattern{}, [&](Rect rows, View<float> out) {
@@ -93,10 +93,10 @@ TEST(Veil, ATileHasTheBytesOfTheFrame) {
 TEST(Veil, FullAndMissingReadingsStayWhatTheyAre) {
   Image<float> seen(kFrame);
   for (int y = 0; y < kFrame.height; ++y) {
-    for (int x = 0; x < kFrame.width; ++x) seen(x, y) = x < 100 ? kInfinity : x < 200 ? 1.01F : std::nanf("");
+    for (int x = 0; x < kFrame.width; ++x) seen(x, y) = x < 100 ? kFull : x < 200 ? 1.01F : std::nanf("");
   }
   veil_of(seen, {.share = 0.01}).take_off({0, 0, kFrame.width, kFrame.height}, seen.plane());
-  EXPECT_EQ(seen(50, 50), kInfinity);
+  EXPECT_EQ(seen(50, 50), kFull);
   EXPECT_NEAR(seen(150, 50), 1, 1e-6) << "neither of them counts as light";
   EXPECT_TRUE(std::isnan(seen(250, 50)));
   Image<float> dark(kFrame);
