@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/rig/camera.h"
-#include "simulator/plan.h"
 #include "simulator/sampling/random.h"
+#include "simulator/simulation_plan.h"
 #include "simulator/spectra/observer.h"
 #include "simulator/targets/target.h"
 

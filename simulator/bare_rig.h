@@ -9,8 +9,8 @@
 #include "core/base/vec.h"
 #include "core/rig/calibration.h"
 #include "simulator/captures_layout.h"
-#include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/scene_rig.h"
 
 namespace weft::simulator {
 

@@ -15,8 +15,8 @@
 #include "core/rig/camera.h"
 #include "simulator/bare_rig.h"
 #include "simulator/captures_layout.h"
-#include "simulator/plan.h"
 #include "simulator/sampling/random.h"
+#include "simulator/simulation_plan.h"
 #include "simulator/spectra/observer.h"
 
 namespace weft::simulator {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/rig/camera.h"
-#include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
-#include "simulator/targets/settings.h"
+#include "simulator/scene/scene_rig.h"
+#include "simulator/targets/target_settings.h"
 
 // What a rig is calibrated from and where it lies, sized by what its camera sees. Millimetres, rig frame.
 

@@ -9,7 +9,7 @@
 #include "core/image/raw_frame.h"
 #include "simulator/camera/dng_writer.h"
 #include "simulator/effects/passes.h"
-#include "simulator/plan.h"
+#include "simulator/simulation_plan.h"
 
 // What sessions and single photographs are simulated with. Internal to simulator.
 

@@ -19,9 +19,9 @@
 #include "simulator/build_passes.h"
 #include "simulator/camera/dng_writer.h"
 #include "simulator/frame_parts.h"
-#include "simulator/map_files.h"
-#include "simulator/plan.h"
 #include "simulator/reflectance/lobe_parameters.h"
+#include "simulator/simulation_plan.h"
+#include "simulator/truth_files.h"
 
 namespace weft::simulator {
 namespace {

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "core/base/files.h"
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 
 namespace weft::virtual_rig {
 namespace {

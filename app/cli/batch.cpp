@@ -25,13 +25,13 @@
 #include "core/describe/field_check.h"
 #include "core/solve/solve.h"
 #include "library/batch/session_list.h"
-#include "library/run/farm.h"
+#include "library/run/farm_submit.h"
 #include "library/run/lean.h"
 #include "library/run/merge_batch.h"
 #include "library/run/plan_batch.h"
 #include "library/run/run_batch.h"
 #include "library/run/survey.h"
-#include "solve/report/report.h"
+#include "solve/report/solve_report.h"
 
 namespace weft::app {
 namespace {

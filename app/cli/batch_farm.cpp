@@ -14,7 +14,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
-#include "library/run/farm.h"
+#include "library/run/farm_submit.h"
 
 namespace weft::app {
 namespace {

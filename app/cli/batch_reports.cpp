@@ -18,9 +18,9 @@
 #include "core/describe/field_json.h"
 #include "library/run/accept_batch.h"
 #include "library/run/batch_page.h"
-#include "library/run/farm.h"
+#include "library/run/farm_submit.h"
 #include "library/run/merge_batch.h"
-#include "solve/report/report.h"
+#include "solve/report/solve_report.h"
 
 namespace weft::app {
 namespace {

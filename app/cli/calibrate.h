@@ -6,7 +6,7 @@
 
 #include "app/cli/options.h"
 #include "app/cli/verb.h"
-#include "calibration/run/outcome.h"
+#include "calibration/run/calibrate_outcome.h"
 #include "core/base/job.h"
 
 namespace weft::app {

@@ -6,11 +6,11 @@
 
 #include "app/cli/calibrate.h"
 #include "app/cli/described_options.h"
-#include "calibration/run/camera.h"
-#include "calibration/run/color.h"
-#include "calibration/run/grey.h"
-#include "calibration/run/lights.h"
-#include "calibration/run/response.h"
+#include "calibration/run/calibrate_camera.h"
+#include "calibration/run/calibrate_color.h"
+#include "calibration/run/calibrate_grey.h"
+#include "calibration/run/calibrate_lights.h"
+#include "calibration/run/calibrate_response.h"
 
 namespace weft::app {
 namespace {

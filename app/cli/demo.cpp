@@ -15,7 +15,7 @@
 #include "material/read/compare.h"
 #include "simulator/scene/resolution.h"
 #include "simulator/simulate.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "virtual_rig/rig_process.h"
 
 namespace weft::app {

@@ -15,9 +15,9 @@
 
 #include "app/cli/exit_code.h"
 #include "app/cli/opened_devices.h"
+#include "app/cli/print_rig_plan.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/rig_owner.h"
-#include "app/cli/rig_plan.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
 #include "app/server/api/bodies/requests.h"

@@ -17,7 +17,7 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
 #include "app/server/api/bodies/scan_body.h"
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 #include "app/server/rig/rig_lock.h"
 #include "capture/rig.h"
 #include "core/base/files.h"
@@ -25,7 +25,7 @@
 #include "core/describe/field_json.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 
 namespace weft::app {
 namespace {

@@ -14,9 +14,9 @@
 #include "simulator/build_passes.h"
 #include "simulator/captures.h"
 #include "simulator/effects/bounds.h"
-#include "simulator/plan.h"
 #include "simulator/scene/scene.h"
 #include "simulator/simulate.h"
+#include "simulator/simulation_plan.h"
 
 namespace weft::app {
 namespace {

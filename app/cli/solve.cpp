@@ -9,7 +9,7 @@
 
 #include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
-#include "app/cli/explain.h"
+#include "app/cli/print_ladder.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
@@ -20,7 +20,7 @@
 #include "core/describe/field_json.h"
 #include "core/rig/session.h"
 #include "solve/report/left_out_report.h"
-#include "solve/report/reflectance.h"
+#include "solve/report/reflectance_report.h"
 #include "solve/run/solve_request.h"
 #include "solve/session/current.h"
 

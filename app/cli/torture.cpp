@@ -14,7 +14,7 @@
 #include "simulator/scene/scene.h"
 #include "simulator/simulate.h"
 #include "simulator/torture_request.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 
 namespace weft::app {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "app/server/api/api.h"
 #include "app/server/http/event_log.h"
-#include "app/server/page/page.h"
+#include "app/server/page/served_page.h"
 #include "app/server/rig/attendance.h"
 #include "app/server/rig/controls.h"
 #include "app/server/rig/frame_pictures.h"

@@ -10,16 +10,16 @@
 #include <utility>
 #include <vector>
 
-#include "bench/accuracy/scenes.h"
+#include "bench/accuracy/accuracy_scenes.h"
 #include "bench/accuracy/score.h"
 #include "bench/base/bound.h"
-#include "bench/base/rig.h"
+#include "bench/base/measured_rig.h"
 #include "bench/base/yardsticks.h"
 #include "core/base/job.h"
 #include "core/base/parallel.h"
 #include "core/solve/solve_record.h"
 #include "simulator/camera/sensor.h"
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "solver/method.h"
 
 namespace weft::bench {
@@ -411,7 +411,7 @@ Json said_of(const pipeline::FrameFacts& facts) {
 
 }  // namespace
 
-/// What levels take on whole frames in memory, of held-out cloths (bench/accuracy/scenes.h).
+/// What levels take on whole frames in memory, of held-out cloths (bench/accuracy/accuracy_scenes.h).
 /// Rendering a megapixel takes up to a minute.
 /// s: wall time of one solve, the search for a lobe in it, which is lobe_s. ns_per_pixel: of s.
 /// ratio_to_unpack: of that to LibRaw's unpacking of four megapixels, as of accuracy_table(). said: of the

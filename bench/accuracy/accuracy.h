@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/accuracy/scenes.h"
+#include "bench/accuracy/accuracy_scenes.h"
 #include "bench/base/study.h"
 #include "core/base/result.h"
 

@@ -8,11 +8,11 @@
 #include <map>
 #include <utility>
 
-#include "bench/accuracy/scenes.h"
+#include "bench/accuracy/accuracy_scenes.h"
 #include "bench/accuracy/score.h"
-#include "calibration/run/camera.h"
-#include "calibration/run/lights.h"
-#include "calibration/run/response.h"
+#include "calibration/run/calibrate_camera.h"
+#include "calibration/run/calibrate_lights.h"
+#include "calibration/run/calibrate_response.h"
 #include "core/base/files.h"
 #include "core/base/statistics.h"
 #include "core/base/temporary_folder.h"
@@ -20,7 +20,7 @@
 #include "material/read/compare.h"
 #include "simulator/captures.h"
 #include "simulator/simulate.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 
 namespace weft::bench {
 namespace {

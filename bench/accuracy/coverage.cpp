@@ -11,22 +11,22 @@
 #include <vector>
 
 #include "bench/accuracy/accuracy.h"
-#include "bench/accuracy/scenes.h"
+#include "bench/accuracy/accuracy_scenes.h"
 #include "bench/accuracy/score.h"
 #include "bench/base/bound.h"
-#include "bench/base/rig.h"
+#include "bench/base/measured_rig.h"
 #include "bench/base/solved_maps.h"
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/base/temporary_folder.h"
 #include "core/base/vec.h"
 #include "simulator/camera/sensor.h"
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "simulator/simulate.h"
 #include "solve/files/pictures.h"
 #include "solve/levels/frame.h"
 #include "solve/run/explain.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "solver/uncertainty/model_sigma.h"
 
 namespace weft::bench {

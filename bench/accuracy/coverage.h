@@ -5,7 +5,7 @@
 #include <span>
 
 #include "bench/accuracy/accuracy.h"
-#include "bench/accuracy/scenes.h"
+#include "bench/accuracy/accuracy_scenes.h"
 #include "bench/base/study.h"
 #include "core/base/result.h"
 #include "solver/method.h"

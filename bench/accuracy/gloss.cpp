@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/accuracy/scenes.h"
+#include "bench/accuracy/accuracy_scenes.h"
 #include "bench/accuracy/score.h"
 #include "core/base/parallel.h"
 #include "simulator/reflectance/presets.h"

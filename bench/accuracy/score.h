@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/accuracy/scenes.h"
+#include "bench/accuracy/accuracy_scenes.h"
 #include "bench/base/solved_maps.h"
 #include "bench/base/study.h"
 #include "core/base/result.h"

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/base/rig.h"
+#include "bench/base/measured_rig.h"
 #include "bench/base/study.h"
 #include "core/base/parallel.h"
 #include "core/base/temporary_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/batch/studies.h"
+#include "bench/batch/batch_studies.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/calibration/studies.h"
+#include "bench/calibration/calibration_studies.h"
 
 #include <fmt/format.h>
 
@@ -12,17 +12,17 @@
 #include <string>
 #include <vector>
 
-#include "bench/base/rig.h"
+#include "bench/base/measured_rig.h"
 #include "bench/oracles/board_views.h"
-#include "calibration/camera/lens.h"
+#include "calibration/camera/lens_fit.h"
 #include "calibration/response/superposition.h"
-#include "calibration/run/camera.h"
-#include "calibration/run/response.h"
-#include "capture/raw/decode.h"
+#include "calibration/run/calibrate_camera.h"
+#include "calibration/run/calibrate_response.h"
+#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
 #include "core/base/temporary_folder.h"
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "simulator/simulate.h"
 #include "simulator/targets/target.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/calibration/studies.h"
+#include "bench/calibration/calibration_studies.h"
 
 #include <fmt/format.h>
 
@@ -15,18 +15,18 @@
 #include "bench/oracles/board_views.h"
 #include "bench/oracles/grey_oracle.h"
 #include "bench/oracles/paper_oracle.h"
-#include "calibration/camera/lens.h"
+#include "calibration/camera/lens_fit.h"
 #include "calibration/color/color_fit.h"
 #include "calibration/lights/grey_chart.h"
 #include "calibration/lights/physical.h"
 #include "calibration/lights/sheet_blocks.h"
 #include "calibration/response/neutral_scale.h"
-#include "calibration/run/color.h"
+#include "calibration/run/calibrate_color.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
 #include "core/base/temporary_folder.h"
 #include "core/rig/color_transform.h"
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "simulator/simulate.h"
 #include "simulator/spectra/observer.h"
 

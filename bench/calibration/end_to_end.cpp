@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/calibration/studies.h"
+#include "bench/calibration/calibration_studies.h"
 
 #include <fmt/format.h>
 
@@ -10,17 +10,17 @@
 #include <vector>
 
 #include "calibration/color/color_fit.h"
-#include "calibration/run/camera.h"
+#include "calibration/run/calibrate_camera.h"
+#include "calibration/run/calibrate_color.h"
+#include "calibration/run/calibrate_lights.h"
+#include "calibration/run/calibrate_response.h"
 #include "calibration/run/check.h"
-#include "calibration/run/color.h"
-#include "calibration/run/lights.h"
-#include "calibration/run/response.h"
 #include "core/base/temporary_folder.h"
 #include "core/image_io/image_io.h"
 #include "simulator/captures.h"
 #include "simulator/scene/scene.h"
 #include "simulator/simulate.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 
 namespace weft::bench {
 namespace {

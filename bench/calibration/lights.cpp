@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/calibration/studies.h"
+#include "bench/calibration/calibration_studies.h"
 
 #include <fmt/format.h>
 
@@ -12,13 +12,13 @@
 #include <optional>
 #include <set>
 
+#include "bench/oracles/oracle_rig.h"
 #include "bench/oracles/paper_oracle.h"
-#include "bench/oracles/rig.h"
 #include "calibration/lights/per_pixel.h"
 #include "calibration/lights/physical.h"
 #include "calibration/lights/seed_iteration.h"
-#include "calibration/run/lights.h"
-#include "capture/raw/decode.h"
+#include "calibration/run/calibrate_lights.h"
+#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
 #include "core/base/temporary_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/calibration/studies.h"
+#include "bench/calibration/calibration_studies.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "calibration/camera/markers.h"
-#include "calibration/checks/movement.h"
+#include "calibration/checks/rig_movement.h"
 #include "core/base/parallel.h"
 #include "simulator/captures_layout.h"
 #include "simulator/sampling/random.h"

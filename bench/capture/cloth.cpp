@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/capture/studies.h"
+#include "bench/capture/capture_studies.h"
 
 #include <fmt/format.h>
 

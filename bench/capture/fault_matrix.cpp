@@ -15,7 +15,7 @@
 #include <tuple>
 
 #include "bench/capture/process_size.h"
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/base/process.h"
 #include "core/base/temporary_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/capture/studies.h"
+#include "bench/capture/capture_studies.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -17,12 +17,12 @@
 #include <vector>
 
 #include "bench/capture/process_size.h"
-#include "calibration/checks/movement.h"
+#include "calibration/checks/rig_movement.h"
 #include "capture/board/led_board.h"
 #include "capture/camera/camera_link.h"
 #include "capture/camera/worker_lines.h"
 #include "capture/camera/worker_process.h"
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/rig.h"
 #include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/scan.h"
@@ -34,8 +34,8 @@
 #include "core/describe/error_json.h"
 #include "core/rig/calibration.h"
 #include "simulator/scene/resolution.h"
-#include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/scene_rig.h"
 #include "virtual_rig/rig_process.h"
 
 namespace weft::bench {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/effects/studies.h"
+#include "bench/effects/effects_studies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "bench/base/rig.h"
-#include "bench/effects/scenes.h"
+#include "bench/base/measured_rig.h"
+#include "bench/effects/effect_scenes.h"
 #include "core/base/parallel.h"
 #include "simulator/build_passes.h"
-#include "simulator/plan.h"
+#include "simulator/simulation_plan.h"
 
 namespace weft::bench {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/effects/studies.h"
+#include "bench/effects/effects_studies.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/effects/scenes.h"
+#include "bench/effects/effect_scenes.h"
 #include "core/base/parallel.h"
 #include "core/image/raw_frame.h"
 #include "core/image_io/image_io.h"

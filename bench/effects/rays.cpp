@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/effects/studies.h"
+#include "bench/effects/effects_studies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "bench/base/bare_embree.h"
-#include "bench/effects/scenes.h"
+#include "bench/effects/effect_scenes.h"
 #include "core/base/parallel.h"
 #include "simulator/effects/halos.h"
-#include "simulator/geometry/surface.h"
-#include "simulator/scene/rig.h"
+#include "simulator/geometry/scene_surface.h"
+#include "simulator/scene/scene_rig.h"
 #include "simulator/transport/bounces.h"
 #include "simulator/transport/height_mesh.h"
 #include "simulator/transport/shadows.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 
 namespace weft::bench {
 

@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include "core/image/image.h"
-#include "simulator/geometry/settings.h"
+#include "simulator/geometry/geometry_settings.h"
 
 namespace weft::bench {
 

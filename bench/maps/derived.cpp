@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/maps/studies.h"
+#include "bench/maps/maps_studies.h"
 
 #include <algorithm>
 #include <array>
@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "bench/accuracy/accuracy.h"
-#include "bench/accuracy/scenes.h"
+#include "bench/accuracy/accuracy_scenes.h"
 #include "bench/accuracy/score.h"
-#include "bench/base/rig.h"
+#include "bench/base/measured_rig.h"
 #include "bench/maps/cloths.h"
 #include "bench/oracles/mesh.h"
 #include "bench/oracles/sky_oracle.h"
@@ -21,7 +21,7 @@
 #include "material/maps/flatten.h"
 #include "material/maps/occlusion.h"
 #include "material/opacity/opacity.h"
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 #include "solver/height/height.h"
 #include "solver/height/tiled_height.h"
 #include "solver/transport/horizon.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/maps/studies.h"
+#include "bench/maps/maps_studies.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "bench/maps/rules.h"
 #include "core/base/parallel.h"
 #include "material/filtering/detail.h"
-#include "material/filtering/gloss.h"
+#include "material/filtering/joined_gloss.h"
 
 namespace weft::bench {
 namespace {

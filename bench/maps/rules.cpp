@@ -8,7 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "material/filtering/normal_length.h"
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 
 namespace weft::bench {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/base/vec.h"
 #include "material/filtering/roughness_mips.h"
-#include "simulator/geometry/settings.h"
+#include "simulator/geometry/geometry_settings.h"
 
 // What lies beneath a texel, and how it reflects: the truth that mips and joined glosses are held against.
 

@@ -18,8 +18,8 @@
 #include "core/solve/solve_record.h"
 #include "report/drawing.h"
 #include "report/preview.h"
-#include "simulator/plan.h"
 #include "simulator/simulate.h"
+#include "simulator/simulation_plan.h"
 #include "solver/method.h"
 
 namespace weft::bench {

@@ -13,8 +13,8 @@
 
 #include "bench/numerics/plain_formula.h"
 #include "bench/oracles/hard_lights.h"
+#include "bench/oracles/oracle_rig.h"
 #include "bench/oracles/quad_oracle.h"
-#include "bench/oracles/rig.h"
 #include "core/solve/solve_record.h"
 #include "solver/in_double/pixel.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 
 namespace weft::test {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "calibration/camera/lens.h"
+#include "calibration/camera/lens_fit.h"
 #include "core/rig/camera.h"
 
 namespace weft::test {

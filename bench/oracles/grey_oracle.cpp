@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 
 namespace weft::test {
 namespace {

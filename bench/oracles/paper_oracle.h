@@ -32,8 +32,8 @@ struct PaperRig {
   double reading(std::size_t sheet, std::size_t led, std::size_t channel, double x_px, double y_px) const;
 };
 
-/// The ten LEDs of bench/oracles/rig.h with aims up to 5 degrees off the centre and lobes of 0.7 to 1.3, a
-/// vignette of 20 percent, and paper whose albedo varies by half a percent, in five poses.
+/// The ten LEDs of bench/oracles/oracle_rig.h with aims up to 5 degrees off the centre and lobes of 0.7
+/// to 1.3, a vignette of 20 percent, and paper whose albedo varies by half a percent, in five poses.
 PaperRig common_rig();
 
 /// Gives each LED a quadratic log gain of its own, random, with nothing in common.

@@ -6,7 +6,7 @@
 
 #include "core/image/raw_frame.h"
 #include "core/rig/calibration.h"
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "simulator/simulate.h"
 
 namespace weft::test {

@@ -11,8 +11,8 @@
 #include <string>
 #include <utility>
 
+#include "bench/accuracy/accuracy_page.h"
 #include "bench/accuracy/coverage.h"
-#include "bench/accuracy/page.h"
 #include "bench/accuracy/photos.h"
 #include "bench/program/studies.h"
 

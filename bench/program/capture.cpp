@@ -4,8 +4,8 @@
 
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
+#include "bench/capture/capture_studies.h"
 #include "bench/capture/fault_matrix.h"
-#include "bench/capture/studies.h"
 #include "bench/program/studies.h"
 
 namespace weft::bench {

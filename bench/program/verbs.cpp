@@ -7,14 +7,14 @@
 #include <utility>
 
 #include "app/cli/exit_code.h"
-#include "bench/batch/studies.h"
-#include "bench/calibration/studies.h"
-#include "bench/effects/studies.h"
-#include "bench/export/studies.h"
-#include "bench/maps/studies.h"
+#include "bench/batch/batch_studies.h"
+#include "bench/calibration/calibration_studies.h"
+#include "bench/effects/effects_studies.h"
+#include "bench/export/export_studies.h"
+#include "bench/maps/maps_studies.h"
 #include "bench/numerics/numerics.h"
-#include "bench/server/studies.h"
-#include "bench/solve/studies.h"
+#include "bench/server/server_studies.h"
+#include "bench/solve/solve_studies.h"
 
 namespace weft::bench {
 namespace {

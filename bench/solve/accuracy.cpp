@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/solve/studies.h"
+#include "bench/solve/solve_studies.h"
 
 #include <algorithm>
 #include <array>
@@ -12,23 +12,23 @@
 #include <vector>
 
 #include "bench/base/bound.h"
-#include "bench/base/rig.h"
+#include "bench/base/measured_rig.h"
 #include "bench/base/solved_maps.h"
 #include "core/base/temporary_folder.h"
 #include "core/base/vec.h"
 #include "core/image_io/image_io.h"
 #include "material/read/compare.h"
-#include "simulator/camera/movement.h"
+#include "simulator/camera/cloth_movement.h"
 #include "simulator/effects/random_key.h"
 #include "simulator/reflectance/presets.h"
 #include "simulator/sampling/random.h"
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "simulator/simulate.h"
 #include "solve/bands/bands.h"
 #include "solve/files/normal_comparison.h"
 #include "solve/input/session_input.h"
 #include "solve/levels/shifts.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "solver/method.h"
 #include "solver/normals/seed.h"
 

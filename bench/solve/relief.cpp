@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/solve/studies.h"
+#include "bench/solve/solve_studies.h"
 
 #include <algorithm>
 #include <array>
@@ -12,19 +12,19 @@
 #include <vector>
 
 #include "bench/base/bare_embree.h"
-#include "bench/base/rig.h"
+#include "bench/base/measured_rig.h"
 #include "bench/base/yardsticks.h"
-#include "bench/effects/scenes.h"
+#include "bench/effects/effect_scenes.h"
 #include "bench/oracles/rays/gather.h"
 #include "bench/oracles/rays/height_grid.h"
-#include "bench/oracles/rays/shadows.h"
+#include "bench/oracles/rays/ray_shadows.h"
 #include "core/base/parallel.h"
 #include "core/base/vec.h"
 #include "core/image/tiles.h"
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 #include "solver/height/height.h"
 #include "solver/transport/horizon.h"
-#include "solver/transport/lights.h"
+#include "solver/transport/light_directions.h"
 #include "solver/transport/relief.h"
 #include "solver/transport/slices.h"
 

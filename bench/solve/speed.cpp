@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/solve/studies.h"
+#include "bench/solve/solve_studies.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/base/rig.h"
+#include "bench/base/measured_rig.h"
 #include "bench/base/yardsticks.h"
 #include "core/base/parallel.h"
 #include "core/base/temporary_folder.h"

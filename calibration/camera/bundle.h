@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/camera/lens.h"
+#include "calibration/camera/lens_fit.h"
 
 // The least squares of fit_lens(): one camera, one pose a board.
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calibration/camera/boards.h"
-#include "calibration/camera/lens.h"
+#include "calibration/camera/lens_fit.h"
 #include "calibration/camera/pose.h"
 #include "core/rig/camera.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calibration/camera/pose.h"
-#include "calibration/checks/movement.h"
+#include "calibration/checks/rig_movement.h"
 
 // What tags and places would show if parts of a rig had moved. Internal to calibration/checks.
 

@@ -11,7 +11,7 @@
 #include "calibration/color/chart.h"
 #include "calibration/lights/paper_evenness.h"
 #include "calibration/run/chart_pictures.h"
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/scan/histogram.h"
 #include "core/rig/calibration.h"
 

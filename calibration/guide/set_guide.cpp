@@ -18,7 +18,7 @@
 #include "calibration/guide/response_series.h"
 #include "calibration/guide/scan_judgement.h"
 #include "calibration/run/sheet_files.h"
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/base/statistics.h"
 #include "core/rig/session.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "calibration/guide/response_series.h"
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/scan/histogram.h"
 #include "capture/scan/series.h"
 #include "core/base/files.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/checks/movement.h"
+#include "calibration/checks/rig_movement.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"

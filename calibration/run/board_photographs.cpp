@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/raw/raw_info.h"
 #include "core/base/files.h"
 #include "core/base/statistics.h"

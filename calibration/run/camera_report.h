@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "calibration/camera/lateral.h"
-#include "calibration/camera/lens.h"
+#include "calibration/camera/lateral_fit.h"
+#include "calibration/camera/lens_fit.h"
 #include "calibration/run/board_photographs.h"
-#include "calibration/run/report.h"
+#include "calibration/run/calibration_report.h"
 #include "core/rig/calibration.h"
 
 namespace weft::app {

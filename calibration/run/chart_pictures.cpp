@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "capture/frames/raw_picture.h"
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/image_io/linear_image.h"
 #include "core/toml/field_toml.h"

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "calibration/checks/flatness.h"
-#include "calibration/checks/movement.h"
-#include "calibration/run/outcome.h"
+#include "calibration/checks/rig_movement.h"
+#include "calibration/run/calibrate_outcome.h"
 #include "core/base/job.h"
 #include "core/base/result.h"
 #include "core/describe/fields.h"

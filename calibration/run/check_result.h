@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
+#include "calibration/run/calibration_report.h"
 #include "calibration/run/last_check.h"
-#include "calibration/run/report.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 

@@ -7,7 +7,7 @@
 
 #include "calibration/color/chart_reference.h"
 #include "calibration/color/color_fit.h"
-#include "calibration/run/report.h"
+#include "calibration/run/calibration_report.h"
 
 namespace weft::app {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "calibration/run/calibration_report.h"
 #include "calibration/run/last_check.h"
-#include "calibration/run/report.h"
 #include "core/base/job.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"

@@ -10,7 +10,7 @@
 #include "calibration/lights/per_pixel.h"
 #include "calibration/lights/physical.h"
 #include "calibration/lights/seed_iteration.h"
-#include "calibration/run/report.h"
+#include "calibration/run/calibration_report.h"
 #include "calibration/run/sheet_captures.h"
 
 namespace weft::app {

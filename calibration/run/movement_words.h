@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "calibration/checks/movement.h"
+#include "calibration/checks/rig_movement.h"
 #include "core/base/json_document.h"
-#include "solve/report/report.h"
+#include "solve/report/solve_report.h"
 
 // What happened to a rig, for people and for programs.
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <set>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/raw/raw_info.h"
 #include "core/image_io/linear_image.h"
 #include "core/rig/photosites.h"

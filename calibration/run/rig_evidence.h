@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calibration/camera/markers.h"
-#include "calibration/checks/movement.h"
+#include "calibration/checks/rig_movement.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 #include "solve/photographs/photographs.h"

@@ -13,7 +13,7 @@
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
-#include "solve/report/report.h"
+#include "solve/report/solve_report.h"
 
 // Sessions of a sheet of white paper, as averages of blocks.
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calibration/checks/flatness.h"
-#include "calibration/checks/movement.h"
+#include "calibration/checks/rig_movement.h"
 #include "calibration/run/sheet_files.h"
 #include "core/base/job.h"
 #include "core/base/result.h"

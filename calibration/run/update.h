@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "calibration/checks/movement.h"
-#include "calibration/run/outcome.h"
+#include "calibration/checks/rig_movement.h"
+#include "calibration/run/calibrate_outcome.h"
 #include "core/base/job.h"
 #include "core/base/result.h"
 #include "core/describe/fields.h"
@@ -23,8 +23,8 @@ struct CalibrateUpdateOptions {
 };
 void describe(Fields& fields, CalibrateUpdateOptions& options);
 
-/// Fits again what has moved (calibration/checks/movement.h), the rest held by what the calibration knows of
-/// it, and writes a new calibration: camera.json where camera and table moved to each other, lights.json
+/// Fits again what has moved (calibration/checks/rig_movement.h), the rest held by what the calibration knows
+/// of it, and writes a new calibration: camera.json where camera and table moved to each other, lights.json
 /// where LEDs moved to the table or changed, every other part as it was, and report/update.html. What was
 /// known of a LED goes with it where LEDs were exchanged; the new camera.json has no covariance. The rig
 /// frame stays with the table. Sessions keep the calibration that they were taken with; `weft solve

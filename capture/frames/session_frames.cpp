@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/raw/raw_info.h"
 #include "core/base/files.h"
 #include "core/image_io/linear_image.h"

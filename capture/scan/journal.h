@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "capture/devices.h"
-#include "capture/scan/plan.h"
 #include "capture/scan/scan.h"
+#include "capture/scan/scan_plan.h"
 #include "core/base/descriptor.h"
 #include "core/base/result.h"
 #include "core/rig/session.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "capture/scan/light_fit.h"
-#include "capture/scan/plan.h"
+#include "capture/scan/scan_plan.h"
 
 namespace weft::capture {
 

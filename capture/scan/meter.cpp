@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "capture/scan/plan.h"
+#include "capture/scan/scan_plan.h"
 #include "core/rig/exposed.h"
 #include "core/rig/exposure_words.h"
 

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "capture/devices.h"
-#include "capture/scan/plan.h"
 #include "capture/scan/scan.h"
+#include "capture/scan/scan_plan.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 

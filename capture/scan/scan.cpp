@@ -13,14 +13,14 @@
 #include <new>
 #include <utility>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/scan/frame_check.h"
 #include "capture/scan/histogram.h"
 #include "capture/scan/journal.h"
 #include "capture/scan/light_evidence.h"
 #include "capture/scan/meter.h"
-#include "capture/scan/plan.h"
 #include "capture/scan/request_check.h"
+#include "capture/scan/scan_plan.h"
 #include "capture/scan/second_copy.h"
 #include "capture/scan/shooter.h"
 #include "core/rig/exposed.h"

@@ -8,8 +8,8 @@
 #include <system_error>
 #include <utility>
 
-#include "capture/raw/decode.h"
-#include "capture/scan/plan.h"
+#include "capture/raw/decode_raw.h"
+#include "capture/scan/scan_plan.h"
 #include "core/base/files.h"
 
 namespace weft::capture {

@@ -9,7 +9,7 @@
 #include "core/base/files.h"
 #include "core/image_io/tiled_texture.h"
 #include "exchange/blocks/dds.h"
-#include "exchange/blocks/decode.h"
+#include "exchange/blocks/decode_blocks.h"
 #include "exchange/blocks/encode.h"
 #include "exchange/presets/mips.h"
 

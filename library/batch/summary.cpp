@@ -16,7 +16,7 @@
 namespace weft::batch {
 namespace {
 
-// What a wrong calibration makes a solve say (solve/report/report.h).
+// What a wrong calibration makes a solve say (solve/report/solve_report.h).
 constexpr std::array<std::string_view, 4> kOfCalibration = {"LIGHTS_DO_NOT_FIT", "LEDS_EXCHANGED", "LED_DEAD",
                                                             "LED_GAIN"};
 

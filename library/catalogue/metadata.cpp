@@ -12,7 +12,7 @@
 #include "core/base/text.h"
 #include "core/solve/solve.h"
 #include "solve/session/current.h"
-#include "solve/session/left_out.h"
+#include "solve/session/left_out_shots.h"
 #include "solve/session/session_lock.h"
 
 namespace weft::library {

@@ -60,10 +60,10 @@ struct Provided {
 };
 
 /// Sets fields of a session's metadata, or `fabric`, `current_solve` (solve/session/current.h) or `left_out`
-/// (solve/session/left_out.h, a whole list); a field that is null is removed. Others stay, unknown ones of
-/// newer versions too. `tags` is a whole list. Takes the lock that a scan holds. Errors: kUsage (a field that
-/// is none, or breaks a rule), kNoInput (also: no such solve or shot), kBadData, kTryAgain (a scan writes the
-/// session, or it is not as provided), kCannotCreate.
+/// (solve/session/left_out_shots.h, a whole list); a field that is null is removed. Others stay, unknown ones
+/// of newer versions too. `tags` is a whole list. Takes the lock that a scan holds. Errors: kUsage (a field
+/// that is none, or breaks a rule), kNoInput (also: no such solve or shot), kBadData, kTryAgain (a scan
+/// writes the session, or it is not as provided), kCannotCreate.
 Result<Change> change_metadata(const std::filesystem::path& session, const Json& fields,
                                const Provided& provided = {});
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "capture/camera/photograph_facts.h"
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/raw/raw_info.h"
 #include "core/base/iso_time.h"
 #include "core/base/statistics.h"

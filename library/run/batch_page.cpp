@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "core/solve/solve.h"
-#include "solve/report/report.h"
+#include "solve/report/solve_report.h"
 
 namespace weft::app {
 namespace {

@@ -14,7 +14,7 @@
 #include "library/catalogue/session_files.h"
 #include "library/run/lean.h"
 #include "material/run/maps.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 
 namespace weft::app {
 

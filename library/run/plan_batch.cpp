@@ -22,7 +22,7 @@
 #include "library/run/plan_file.h"
 #include "library/run/sample.h"
 #include "library/run/survey.h"
-#include "solve/report/report.h"
+#include "solve/report/solve_report.h"
 #include "solver/method.h"
 
 namespace weft::app {

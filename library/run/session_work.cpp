@@ -13,7 +13,7 @@
 #include "library/run/follow_ups.h"
 #include "library/run/lean.h"
 #include "library/run/solve_change.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 
 namespace weft::app {
 namespace {

@@ -17,7 +17,7 @@
 #include "core/rig/calibration.h"
 #include "core/solve/solve.h"
 #include "library/run/lean.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "solve/session/current.h"
 #include "solver/method.h"
 

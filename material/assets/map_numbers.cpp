@@ -11,7 +11,7 @@
 #include "core/image_io/image_io.h"
 #include "core/image_io/linear_image.h"
 #include "material/assets/map_set.h"
-#include "material/filtering/gloss.h"
+#include "material/filtering/joined_gloss.h"
 #include "material/read/file_meaning.h"
 
 namespace weft::app {

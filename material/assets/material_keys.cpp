@@ -11,7 +11,7 @@
 #include "core/base/text.h"
 #include "core/toml/field_toml.h"
 #include "material/assets/material_file.h"
-#include "material/filtering/gloss.h"
+#include "material/filtering/joined_gloss.h"
 
 namespace weft::app {
 namespace {

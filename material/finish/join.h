@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "material/finish/cut.h"
+#include "material/finish/closed_cut.h"
 #include "material/surface.h"
 
 namespace weft::material {

@@ -13,7 +13,7 @@
 #include "core/base/vec.h"
 #include "core/solve/solve_record.h"
 #include "material/cubic.h"
-#include "material/smooth.h"
+#include "material/smooth_map.h"
 
 namespace weft::material {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/image/fourier.h"
 #include "core/solve/solve_record.h"
 #include "material/cubic.h"
-#include "material/smooth.h"
+#include "material/smooth_map.h"
 
 namespace weft::material {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/vec.h"
-#include "material/filtering/gloss.h"
+#include "material/filtering/joined_gloss.h"
 
 namespace weft::material {
 namespace {

@@ -15,7 +15,7 @@ enum class LayerBlend {
   kReplace,  ///< below + mask (layer - below)
   /// The layer's relief, pattern and gloss are joined to what is below and nothing else of it changes: slopes
   /// and heights less their mean, the albedo multiplied by the layer's over its mean, and the roughness that
-  /// facets of the one on facets of the other have (material/filtering/gloss).
+  /// facets of the one on facets of the other have (material/filtering/joined_gloss).
   kDetail
 };
 const char* name_of(LayerBlend blend);

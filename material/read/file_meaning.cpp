@@ -12,7 +12,7 @@
 #include "core/image/color_spaces.h"
 #include "core/image_io/linear_image.h"
 #include "exchange/blocks/dds.h"
-#include "exchange/blocks/decode.h"
+#include "exchange/blocks/decode_blocks.h"
 #include "exchange/presets/export_facts.h"
 #include "exchange/presets/pack.h"
 

@@ -14,7 +14,7 @@
 
 #include "core/base/percent.h"
 #include "material/filtering/detail.h"
-#include "material/finish/color.h"
+#include "material/finish/color_correction.h"
 #include "material/finish/crop.h"
 #include "material/finish/repair.h"
 #include "material/finish/straighten.h"

@@ -14,7 +14,7 @@
 #include "capture/frames/raw_picture.h"
 #include "capture/frames/session_frames.h"
 #include "capture/raw/raw_info.h"
-#include "material/rectify.h"
+#include "material/table_grid.h"
 
 namespace weft::app {
 namespace {

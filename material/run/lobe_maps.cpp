@@ -12,7 +12,7 @@
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "core/solve/solve_record.h"
-#include "material/filtering/gloss.h"
+#include "material/filtering/joined_gloss.h"
 #include "material/filtering/roughness_mips.h"
 #include "material/run/map_work.h"
 #include "material/run/surface_files.h"

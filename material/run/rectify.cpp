@@ -19,7 +19,7 @@
 #include "core/rig/session.h"
 #include "core/solve/solve.h"
 #include "core/solve/solve_record.h"
-#include "material/rectify.h"
+#include "material/table_grid.h"
 #include "solve/session/current.h"
 
 namespace weft::app {

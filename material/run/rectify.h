@@ -60,7 +60,7 @@ struct RectifyReport {
 };
 
 /// Puts the maps of a solve on a square grid of the table at the session's cloth_height_mm, lens and
-/// perspective removed (material/rectify.h): normal.exr, albedo.exr, sigma.exr, status.png, of a measured
+/// perspective removed (material/table_grid.h): normal.exr, albedo.exr, sigma.exr, status.png, of a measured
 /// lobe roughness.exr and specular.exr, and rectify.json (weft.rectified/1), made aside and published whole.
 /// Sigma is that of the photographed pixels around: a mean of several, which the filter takes, has less. Maps
 /// of half the frame's size, as the level preview gives, have half the camera's. Memory holds one map of the

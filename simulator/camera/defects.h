@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/image/image.h"
-#include "simulator/camera/settings.h"
+#include "simulator/camera/camera_settings.h"
 
 namespace weft::simulator {
 

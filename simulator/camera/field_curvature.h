@@ -7,8 +7,8 @@
 #include "core/image/color_spaces.h"
 #include "core/image/image.h"
 #include "core/rig/camera.h"
+#include "simulator/camera/camera_settings.h"
 #include "simulator/camera/optics.h"
-#include "simulator/camera/settings.h"
 
 namespace weft::simulator {
 

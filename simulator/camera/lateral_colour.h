@@ -7,7 +7,7 @@
 #include "core/image/color_spaces.h"
 #include "core/image/image.h"
 #include "core/rig/camera.h"
-#include "simulator/camera/settings.h"
+#include "simulator/camera/camera_settings.h"
 
 namespace weft::simulator {
 

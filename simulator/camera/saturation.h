@@ -7,7 +7,7 @@
 
 #include "core/base/result.h"
 #include "core/image/image.h"
-#include "simulator/camera/settings.h"
+#include "simulator/camera/camera_settings.h"
 
 namespace weft::simulator {
 

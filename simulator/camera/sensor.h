@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/rig/calibration.h"
-#include "simulator/camera/settings.h"
+#include "simulator/camera/camera_settings.h"
 #include "simulator/sampling/random.h"
 
 namespace weft::simulator {

@@ -12,7 +12,7 @@
 #include "simulator/camera/optics.h"
 #include "simulator/camera/saturation.h"
 #include "simulator/effects/halos.h"
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 #include "simulator/light/incidence.h"
 #include "simulator/spectra/observer.h"
 #include "simulator/targets/target.h"

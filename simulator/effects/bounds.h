@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "simulator/effects/passes.h"
-#include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/scene_rig.h"
 
 // What an effect can change at most, found from the scene's numbers without rendering: what `effects =
 // "auto"` leaves out by. Bounds hold in every sample of every shot, whatever other effects run, so the bounds

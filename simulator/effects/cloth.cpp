@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/effects/effects.h"
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 
 namespace weft::simulator {
 

@@ -3,8 +3,8 @@
 
 #include "simulator/effects/halos.h"
 #include "simulator/effects/passes.h"
-#include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/scene_rig.h"
 
 // The passes, in the order of light: cloth, LED, cloth again, lens, sensor. Each copies what it needs of
 // scene and rig. The plain passes below run for every scene; every other one is an effect that a scene names.

@@ -8,10 +8,10 @@
 
 #include "simulator/camera/field_curvature.h"
 #include "simulator/camera/lateral_colour.h"
-#include "simulator/camera/lens.h"
 #include "simulator/camera/optics.h"
 #include "simulator/camera/saturation.h"
-#include "simulator/geometry/surface.h"
+#include "simulator/camera/scene_camera.h"
+#include "simulator/geometry/scene_surface.h"
 #include "simulator/transport/diffusion.h"
 #include "simulator/transport/rays.h"
 

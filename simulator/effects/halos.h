@@ -5,8 +5,8 @@
 
 #include "core/base/result.h"
 #include "simulator/effects/passes.h"
-#include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/scene_rig.h"
 
 namespace weft::simulator {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/camera/movement.h"
+#include "simulator/camera/cloth_movement.h"
 
 #include "simulator/effects/effects.h"
 #include "simulator/effects/random_key.h"

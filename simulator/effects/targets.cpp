@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "simulator/camera/lens.h"
+#include "simulator/camera/scene_camera.h"
 #include "simulator/effects/effects.h"
 #include "simulator/spectra/observer.h"
 

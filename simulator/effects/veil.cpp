@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/camera/veil.h"
+#include "simulator/camera/lens_veil.h"
 
 #include <algorithm>
 #include <map>

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "simulator/geometry/settings.h"
+#include "simulator/geometry/geometry_settings.h"
 #include "simulator/geometry/surface_point.h"
 
 namespace weft::simulator {

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "core/image/image.h"
+#include "simulator/geometry/geometry_settings.h"
 #include "simulator/geometry/picture_grid.h"
-#include "simulator/geometry/settings.h"
 #include "simulator/geometry/surface_point.h"
 
 namespace weft::simulator {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/vec.h"
-#include "simulator/geometry/settings.h"
+#include "simulator/geometry/geometry_settings.h"
 #include "simulator/geometry/surface_point.h"
 
 namespace weft::simulator {

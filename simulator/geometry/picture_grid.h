@@ -6,7 +6,7 @@
 
 #include "core/base/vec.h"
 #include "core/image/image.h"
-#include "simulator/geometry/settings.h"
+#include "simulator/geometry/geometry_settings.h"
 
 namespace weft::simulator {
 

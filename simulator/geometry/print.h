@@ -8,8 +8,8 @@
 #include "core/base/result.h"
 #include "core/image/color_spaces.h"
 #include "core/image/image.h"
+#include "simulator/geometry/geometry_settings.h"
 #include "simulator/geometry/picture_grid.h"
-#include "simulator/geometry/settings.h"
 
 namespace weft::simulator {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "simulator/geometry/fibres.h"
-#include "simulator/geometry/settings.h"
+#include "simulator/geometry/geometry_settings.h"
 #include "simulator/geometry/surface_point.h"
 
 namespace weft::simulator {

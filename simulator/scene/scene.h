@@ -14,12 +14,12 @@
 #include "core/base/vec.h"
 #include "core/image/color_spaces.h"
 #include "core/rig/cloth_pose.h"
-#include "simulator/camera/settings.h"
+#include "simulator/camera/camera_settings.h"
+#include "simulator/geometry/geometry_settings.h"
 #include "simulator/geometry/print.h"
-#include "simulator/geometry/settings.h"
 #include "simulator/reflectance/reflectance.h"
 #include "simulator/spectra/spectrum.h"
-#include "simulator/targets/settings.h"
+#include "simulator/targets/target_settings.h"
 
 // A scene says what is on the table, what lights it, what photographs it and which effects are simulated.
 // docs/reference/scenes.md lists every key; millimetres and the rig frame throughout.

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "simulator/scene/camera_keys.h"
+#include "simulator/scene/cloth_keys.h"
 #include "simulator/scene/geometry_keys.h"
 #include "simulator/scene/light_keys.h"
-#include "simulator/scene/material_keys.h"
 #include "simulator/scene/scene.h"
 #include "simulator/scene/scene_key.h"
 #include "simulator/scene/target_keys.h"

@@ -7,7 +7,7 @@
 
 #include "core/base/result.h"
 #include "core/image/color_spaces.h"
-#include "simulator/targets/settings.h"
+#include "simulator/targets/target_settings.h"
 
 // What is printed: upright rectangles of one ink each. Boards, charts, scales and markers are all such, so
 // that the mean over a pixel is exact and no bitmap is sampled.

@@ -11,8 +11,8 @@
 #include "core/image/color_spaces.h"
 #include "simulator/spectra/spectrum.h"
 #include "simulator/targets/pattern.h"
-#include "simulator/targets/settings.h"
-#include "simulator/targets/sheet.h"
+#include "simulator/targets/sheet_waves.h"
+#include "simulator/targets/target_settings.h"
 
 // Calibration targets in the rig frame: what a camera's ray meets, in closed form.
 

@@ -12,7 +12,7 @@
 #include "core/base/parallel.h"
 #include "solve/correction/corrected_tile.h"
 #include "solve/correction/light_correction.h"
-#include "solve/photographs/model_sigma.h"
+#include "solve/photographs/frame_sigma.h"
 #include "solve/photographs/tile_reader.h"
 #include "solver/kernels/demosaic.h"
 

@@ -9,7 +9,7 @@
 #include "solve/correction/light_strengths.h"
 #include "solve/photographs/photographs.h"
 #include "solve/photographs/tile_reader.h"
-#include "solver/transport/lights.h"
+#include "solver/transport/light_directions.h"
 #include "solver/transport/relief.h"
 
 namespace weft::pipeline {

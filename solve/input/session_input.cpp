@@ -14,7 +14,7 @@
 #include "solve/input/session_conditions.h"
 #include "solve/levels/reference.h"
 #include "solve/photographs/plane_weights.h"
-#include "solve/session/left_out.h"
+#include "solve/session/left_out_shots.h"
 
 namespace weft::app {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "solve/bands/lateral.h"
+#include "solve/bands/realign.h"
 #include "solve/correction/left_out.h"
 #include "solve/photographs/tile_reader.h"
 

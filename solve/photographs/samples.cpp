@@ -6,7 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
-#include "solve/photographs/evidence.h"
+#include "solve/photographs/diagnosis_pixels.h"
 #include "solve/photographs/picture_axes.h"
 #include "solve/photographs/tile_reader.h"
 #include "solver/diagnosis/highlights.h"

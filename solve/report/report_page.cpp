@@ -10,8 +10,8 @@
 
 #include "core/describe/field_json.h"
 #include "solve/report/left_out_report.h"
-#include "solve/report/reflectance.h"
-#include "solve/report/report.h"
+#include "solve/report/reflectance_report.h"
+#include "solve/report/solve_report.h"
 
 namespace weft::app {
 namespace {

@@ -14,7 +14,7 @@
 #include "report/downsampler.h"
 #include "solve/levels/shifts.h"
 #include "solve/photographs/cut.h"
-#include "solve/report/reflectance.h"
+#include "solve/report/reflectance_report.h"
 #include "solve/run/facts_json.h"
 
 namespace weft::app {

@@ -13,7 +13,7 @@
 #include "core/base/result.h"
 #include "solve/input/photo_input.h"
 #include "solve/input/session_input.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "solver/method.h"
 
 // What each level of the solver would give and cost, measured on this cloth and this machine before it is

@@ -9,7 +9,7 @@
 #include "core/base/job.h"
 #include "core/base/result.h"
 #include "solve/input/session_input.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 
 namespace weft::app {
 

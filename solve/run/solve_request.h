@@ -7,7 +7,7 @@
 
 #include "core/describe/fields.h"
 #include "solve/run/explain.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 
 namespace weft::app {
 

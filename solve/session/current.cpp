@@ -11,7 +11,7 @@
 #include "core/base/iso_time.h"
 #include "core/base/product.h"
 #include "core/solve/solve.h"
-#include "solve/session/left_out.h"
+#include "solve/session/left_out_shots.h"
 
 namespace weft::library {
 namespace {

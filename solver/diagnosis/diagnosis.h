@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "solver/diagnosis/evidence.h"
+#include "solver/diagnosis/evidence_row.h"
 
 namespace weft::solver {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "solver/diagnosis/evidence.h"
+#include "solver/diagnosis/evidence_row.h"
 
 namespace weft::solver {
 

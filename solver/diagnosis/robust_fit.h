@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/vec.h"
-#include "solver/diagnosis/evidence.h"
+#include "solver/diagnosis/evidence_row.h"
 
 namespace weft::solver {
 

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "core/base/vec.h"
-#include "solver/height/bands.h"
 #include "solver/height/islands.h"
 #include "solver/height/multigrid.h"
 #include "solver/height/poisson.h"
+#include "solver/height/row_bands.h"
 #include "solver/height/seed_relaxation.h"
 #include "solver/height/slopes.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "solver/height/bands.h"
 #include "solver/height/grid.h"
+#include "solver/height/row_bands.h"
 
 namespace weft::solver {
 namespace {

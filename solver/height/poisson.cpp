@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/vec.h"
-#include "solver/height/bands.h"
 #include "solver/height/cosine_transform.h"
+#include "solver/height/row_bands.h"
 
 namespace weft::solver {
 namespace {

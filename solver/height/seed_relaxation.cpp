@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "solver/height/bands.h"
 #include "solver/height/grid.h"
+#include "solver/height/row_bands.h"
 
 namespace weft::solver {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "solver/height/bands.h"
+#include "solver/height/row_bands.h"
 
 namespace weft::solver {
 namespace {

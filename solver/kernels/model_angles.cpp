@@ -15,7 +15,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {
 
-// All constants are fitted to the tuning set (bench/accuracy/scenes.h), over all levels at once.
+// All constants are fitted to the tuning set (bench/accuracy/accuracy_scenes.h), over all levels at once.
 
 // Degrees by which light from the cloth turns a normal, over albedo and square of the slope: a slope sees as
 // much of the cloth as it does not see of the sky. Flanks, steeper than what is around them, are turned by

@@ -7,7 +7,7 @@
 
 #include "core/base/statistics.h"
 #include "solver/in_double/pixel.h"
-#include "solver/registration/smooth.h"
+#include "solver/registration/smooth_shifts.h"
 
 namespace weft::solver {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/image/image.h"
-#include "solver/transport/lights.h"
+#include "solver/transport/light_directions.h"
 
 namespace weft::solver {
 

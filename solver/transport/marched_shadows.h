@@ -6,7 +6,7 @@
 
 #include "core/base/result.h"
 #include "core/image/image.h"
-#include "solver/transport/lights.h"
+#include "solver/transport/light_directions.h"
 #include "solver/transport/relief.h"
 
 namespace weft::solver {

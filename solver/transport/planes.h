@@ -8,7 +8,7 @@
 #include "core/base/result.h"
 #include "core/base/vec.h"
 #include "core/image/image.h"
-#include "solver/transport/lights.h"
+#include "solver/transport/light_directions.h"
 #include "solver/transport/relief.h"
 
 // What the functions of this folder ask of the tiles they are given.

@@ -7,10 +7,10 @@
 namespace weft::solver {
 namespace {
 
-// Fitted to the tuning set (bench/accuracy/scenes.h). Of a preview: what its pixels' four photosites differ
-// by, over the steps from pixel to pixel. On a yarn they lie a quarter of a step to both sides. Where normals
-// meet on both sides the pixel itself is mixed from two yarns; where they meet on one side, what mixes is
-// mostly the neighbour.
+// Fitted to the tuning set (bench/accuracy/accuracy_scenes.h). Of a preview: what its pixels' four photosites
+// differ by, over the steps from pixel to pixel. On a yarn they lie a quarter of a step to both sides. Where
+// normals meet on both sides the pixel itself is mixed from two yarns; where they meet on one side, what
+// mixes is mostly the neighbour.
 constexpr float kOnYarn = 0.3F, kMixed = 0.88F, kBesideMixed = 0.09F;
 
 }  // namespace

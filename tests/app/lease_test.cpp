@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/server/studies.h"
+#include "bench/server/server_studies.h"
 
 #include <gtest/gtest.h>
 

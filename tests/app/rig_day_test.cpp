@@ -17,8 +17,8 @@
 #include "core/rig/session.h"
 #include "material/read/compare.h"
 #include "simulator/scene/resolution.h"
-#include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/scene_rig.h"
 #include "tests/core/places.h"
 #include "virtual_rig/table/knock.h"
 

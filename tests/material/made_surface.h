@@ -7,7 +7,7 @@
 
 #include "core/base/vec.h"
 #include "material/surface.h"
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 
 namespace weft::material {
 

@@ -136,7 +136,7 @@ TEST(Docs, TheReadmeHasEveryLevelInItsOrder) {
 
 /// A code is a word for a sentence: the sentence is said somewhere, and the page has the word.
 TEST(Docs, TheCodesOfErrorsAreSaidByTheServerAndExplained) {
-  const std::string table = "app/server/http/error_json.cpp";
+  const std::string table = "app/server/http/error_reply.cpp";
   std::string page, said;
   std::vector<std::pair<std::string, std::string>> codes;
   static const std::regex row(R"re(\{"([^"]+)", "(\w+)"\})re");

@@ -9,8 +9,8 @@
 #include "simulator/camera/optics.h"
 #include "simulator/geometry/weave.h"
 #include "simulator/light/incidence.h"
-#include "simulator/plan.h"
 #include "simulator/simulate.h"
+#include "simulator/simulation_plan.h"
 #include "tests/simulator/output.h"
 
 namespace weft::simulator {

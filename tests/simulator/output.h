@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "simulator/simulate.h"
 
 // What the simulator makes of a scene, for tests to look at.

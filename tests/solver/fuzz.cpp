@@ -10,7 +10,7 @@
 #include <string>
 
 #include "bench/oracles/hard_lights.h"
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 
 namespace weft::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "bench/oracles/hard_lights.h"
+#include "bench/oracles/oracle_rig.h"
 #include "bench/oracles/quad_oracle.h"
-#include "bench/oracles/rig.h"
 #include "core/rig/light_field.h"
 #include "solver/in_double/pixel.h"
 #include "tests/solver/tiles.h"

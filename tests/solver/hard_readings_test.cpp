@@ -7,8 +7,8 @@
 #include <tuple>
 
 #include "bench/oracles/hard_lights.h"
+#include "bench/oracles/oracle_rig.h"
 #include "bench/oracles/quad_oracle.h"
-#include "bench/oracles/rig.h"
 #include "core/image/tiles.h"
 #include "solver/in_double/pixel.h"
 #include "tests/solver/tiles.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "solver/in_double/pixel.h"
 #include "tests/simd_targets.h"
 #include "tests/solver/tiles.h"

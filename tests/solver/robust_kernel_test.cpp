@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "solver/in_double/pixel.h"
 #include "solver/kernels/weighted.h"
 #include "tests/simd_targets.h"

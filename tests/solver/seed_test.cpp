@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "tests/solver/tiles.h"
 
 namespace weft {

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "bench/oracles/hard_lights.h"
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 
 namespace weft {
 namespace {

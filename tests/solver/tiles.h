@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "bench/oracles/oracle_rig.h"
 #include "bench/oracles/quad_oracle.h"
-#include "bench/oracles/rig.h"
 
 // The tiles that the solver's tests solve.
 

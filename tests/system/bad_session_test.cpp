@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "simulator/camera/dng_writer.h"

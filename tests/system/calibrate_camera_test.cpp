@@ -11,14 +11,14 @@
 
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
-#include "calibration/run/camera.h"
-#include "capture/raw/decode.h"
+#include "calibration/run/calibrate_camera.h"
+#include "capture/raw/decode_raw.h"
 #include "core/image_io/image_io.h"
 #include "material/run/rectify.h"
 #include "simulator/camera/dng_writer.h"
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "simulator/simulate.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "tests/system/workspace.h"
 
 namespace weft::test {

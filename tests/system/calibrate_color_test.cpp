@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/run/color.h"
+#include "calibration/run/calibrate_color.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@
 #include "core/rig/color_transform.h"
 #include "simulator/simulate.h"
 #include "simulator/spectra/observer.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 

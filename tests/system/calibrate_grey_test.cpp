@@ -7,9 +7,9 @@
 #include <cmath>
 #include <string>
 
-#include "calibration/run/grey.h"
+#include "calibration/run/calibrate_grey.h"
 #include "core/base/files.h"
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "simulator/simulate.h"
 #include "tests/system/workspace.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/run/lights.h"
+#include "calibration/run/calibrate_lights.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

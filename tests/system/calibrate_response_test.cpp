@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/run/response.h"
+#include "calibration/run/calibrate_response.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

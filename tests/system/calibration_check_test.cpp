@@ -8,18 +8,18 @@
 #include <cmath>
 
 #include "calibration/camera/pose.h"
+#include "calibration/run/calibrate_patches.h"
 #include "calibration/run/check.h"
 #include "calibration/run/check_result.h"
 #include "calibration/run/history.h"
-#include "calibration/run/patches.h"
 #include "calibration/run/rig_evidence.h"
 #include "calibration/run/update.h"
 #include "core/base/files.h"
 #include "simulator/captures.h"
 #include "simulator/captures_layout.h"
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "solve/input/session_input.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "tests/system/program.h"
 
 // A rig that is checked, moves, is found out and updated: 600 x 400 pixels over 200 mm of table.

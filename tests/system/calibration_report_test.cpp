@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/run/report.h"
+#include "calibration/run/calibration_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "core/image_io/image_io.h"

@@ -9,7 +9,7 @@
 
 #include "core/image_io/image_io.h"
 #include "material/read/compare.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "tests/simd_targets.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"

@@ -18,7 +18,7 @@
 #include "core/rig/session.h"
 #include "material/run/surface_files.h"
 #include "solve/files/gloss_maps.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "tests/material/weave.h"
 #include "tests/system/program.h"
 #include "tests/system/session_test.h"

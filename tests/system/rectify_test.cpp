@@ -10,7 +10,7 @@
 #include <string>
 
 #include "core/image_io/image_io.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {

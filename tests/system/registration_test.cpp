@@ -17,7 +17,7 @@
 #include "solve/bands/bands.h"
 #include "solve/input/session_input.h"
 #include "solve/run/facts_json.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "solver/method.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 

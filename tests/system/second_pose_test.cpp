@@ -8,7 +8,7 @@
 
 #include "core/base/json_document.h"
 #include "core/rig/session.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "tests/system/program.h"
 #include "tests/system/session_test.h"
 

@@ -13,7 +13,7 @@
 
 #include "core/base/files.h"
 #include "core/rig/session.h"
-#include "solve/report/report.h"
+#include "solve/report/solve_report.h"
 #include "solver/method.h"
 #include "tests/system/program.h"
 #include "tests/system/samples.h"

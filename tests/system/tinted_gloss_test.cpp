@@ -12,7 +12,7 @@
 #include "core/image_io/image_io.h"
 #include "core/solve/solve_record.h"
 #include "material/run/maps.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {

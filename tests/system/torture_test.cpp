@@ -9,7 +9,7 @@
 #include "core/image_io/image_io.h"
 #include "core/rig/light_field.h"
 #include "core/solve/solve_record.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 #include "solver/method.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "capture/board/led_board.h"
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "tests/virtual_rig/ptp/client_process.h"
 #include "tests/virtual_rig/ptp/gphoto_client.h"

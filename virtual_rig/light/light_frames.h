@@ -12,7 +12,7 @@
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "core/image/tiles.h"
-#include "simulator/plan.h"
+#include "simulator/simulation_plan.h"
 
 namespace weft::virtual_rig {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "virtual_rig/table/said.h"
 
 namespace weft::virtual_rig {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 #include "app/server/jobs/job.h"
 #include "core/base/error_kind.h"
 #include "core/describe/error_json.h"

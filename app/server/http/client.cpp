@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 
 namespace weft::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 
 namespace weft::app {
 namespace {

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 #include "core/base/files.h"
 
 namespace weft::app {

@@ -21,7 +21,7 @@
 #include <utility>
 
 #include "app/server/http/conditions.h"
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 #include "app/server/http/path_pattern.h"
 #include "core/base/files.h"
 

@@ -8,9 +8,9 @@
 #include <numeric>
 #include <utility>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/scan/histogram.h"
-#include "capture/scan/plan.h"
+#include "capture/scan/scan_plan.h"
 #include "core/base/files.h"
 #include "core/describe/error_json.h"
 #include "core/rig/calibration.h"

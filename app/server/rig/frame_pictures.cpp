@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 #include "capture/frames/raw_picture.h"
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/scan/histogram.h"
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"

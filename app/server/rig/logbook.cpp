@@ -13,7 +13,7 @@
 #include <string_view>
 #include <utility>
 
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
 

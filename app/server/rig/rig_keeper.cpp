@@ -8,7 +8,7 @@
 #include <exception>
 #include <utility>
 
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 #include "app/server/rig/watched_camera.h"
 #include "core/describe/error_json.h"
 #include "library/catalogue/session_files.h"

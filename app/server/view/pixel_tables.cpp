@@ -5,7 +5,7 @@
 #include <exception>
 #include <utility>
 
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 
 namespace weft::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "calibration/camera/lens.h"
+#include "calibration/camera/lens_fit.h"
 #include "core/rig/camera.h"
 #include "core/solve/solve_record.h"
 

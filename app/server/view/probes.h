@@ -5,8 +5,8 @@
 #include <functional>
 #include <string>
 
-#include "app/server/view/layers.h"
 #include "app/server/view/pyramid.h"
+#include "app/server/view/viewed_maps.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/image/image.h"

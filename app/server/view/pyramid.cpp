@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/base/json_document.h"
 #include "core/base/parallel.h"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "app/server/view/layers.h"
+#include "app/server/view/viewed_maps.h"
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "core/image/raw_frame.h"

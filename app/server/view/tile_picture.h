@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/server/view/layers.h"
+#include "app/server/view/viewed_maps.h"
 #include "core/base/result.h"
 #include "core/base/vec.h"
 #include "core/image/image.h"

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "bench/oracles/rays/lattice.h"
+#include "bench/oracles/rays/ray_lattice.h"
 #include "solver/transport/planes.h"
 
 namespace weft::test {

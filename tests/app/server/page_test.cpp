@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/server/page/page.h"
+#include "app/server/page/served_page.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <thread>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/scan/histogram.h"
 #include "core/base/files.h"
 #include "simulator/camera/dng_writer.h"

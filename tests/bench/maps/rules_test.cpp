@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "simulator/geometry/settings.h"
+#include "simulator/geometry/geometry_settings.h"
 
 namespace weft::bench {
 namespace {

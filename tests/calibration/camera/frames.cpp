@@ -8,8 +8,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "capture/raw/decode.h"
-#include "simulator/scene/rig.h"
+#include "capture/raw/decode_raw.h"
+#include "simulator/scene/scene_rig.h"
 #include "simulator/simulate.h"
 #include "simulator/targets/target.h"
 

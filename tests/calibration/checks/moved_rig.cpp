@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "core/rig/camera.h"
 #include "simulator/light/incidence.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "calibration/camera/pose.h"
-#include "calibration/checks/movement.h"
+#include "calibration/checks/rig_movement.h"
 #include "core/rig/calibration.h"
 
 namespace weft::test {

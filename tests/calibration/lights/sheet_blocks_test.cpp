@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 
 namespace weft::calibration {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "simulator/camera/veil.h"
+#include "simulator/camera/lens_veil.h"
 
 namespace weft::calibration {
 namespace {

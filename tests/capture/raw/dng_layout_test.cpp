@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "tests/capture/raw/dng_bytes.h"
 
 namespace weft::capture {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const int file = memfd_create("fuzz_decode", MFD_CLOEXEC);

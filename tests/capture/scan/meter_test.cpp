@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "capture/scan/light_fit.h"
-#include "capture/scan/plan.h"
+#include "capture/scan/scan_plan.h"
 #include "tests/capture/scan/simulated_rig.h"
 
 namespace weft::capture {

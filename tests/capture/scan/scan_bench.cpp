@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture/raw/decode.h"
-#include "capture/scan/plan.h"
+#include "capture/raw/decode_raw.h"
+#include "capture/scan/scan_plan.h"
 #include "core/base/files.h"
 
 namespace weft::test {

@@ -11,7 +11,7 @@
 #include <set>
 #include <stop_token>
 
-#include "capture/scan/plan.h"
+#include "capture/scan/scan_plan.h"
 #include "capture/scan/second_copy.h"
 #include "core/base/files.h"
 #include "tests/capture/scan/scan_bench.h"

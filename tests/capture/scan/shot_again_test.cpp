@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "capture/scan/plan.h"
+#include "capture/scan/scan_plan.h"
 #include "capture/scan/second_copy.h"
 #include "core/base/files.h"
 #include "tests/capture/scan/scan_bench.h"

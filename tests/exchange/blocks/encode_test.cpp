@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-#include "exchange/blocks/decode.h"
+#include "exchange/blocks/decode_blocks.h"
 #include "tests/exchange/blocks/block_pictures.h"
 #include "tests/simd_targets.h"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "exchange/blocks/dds.h"
-#include "exchange/blocks/decode.h"
+#include "exchange/blocks/decode_blocks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace weft::exchange;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/files.h"
-#include "solve/session/left_out.h"
+#include "solve/session/left_out_shots.h"
 #include "solve/session/session_lock.h"
 #include "tests/library/catalogue/shelf.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/base/vec.h"
-#include "material/filtering/gloss.h"
+#include "material/filtering/joined_gloss.h"
 #include "tests/material/filtering/listing8.h"
 
 namespace weft::material {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/base/vec.h"
-#include "material/filtering/gloss.h"
+#include "material/filtering/joined_gloss.h"
 #include "material/filtering/roughness_mips.h"
 
 namespace weft::material {

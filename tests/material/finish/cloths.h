@@ -8,7 +8,7 @@
 #include <random>
 
 #include "material/finish/straighten.h"
-#include "material/smooth.h"
+#include "material/smooth_map.h"
 #include "tests/material/weave.h"
 
 namespace weft::material {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/solve/solve_record.h"
-#include "material/finish/color.h"
+#include "material/finish/color_correction.h"
 #include "material/finish/crop.h"
 #include "tests/material/weave.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/solve/solve_record.h"
-#include "material/smooth.h"
+#include "material/smooth_map.h"
 #include "tests/material/lattice/lattice_case.h"
 
 namespace weft::material {

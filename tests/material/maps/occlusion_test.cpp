@@ -9,7 +9,7 @@
 
 #include "bench/oracles/sky_oracle.h"
 #include "core/base/vec.h"
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 #include "tests/material/maps/slopes.h"
 
 namespace weft::material {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 
 namespace weft::material {
 namespace {

@@ -21,7 +21,7 @@
 #include <string>
 #include <utility>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/raw/tiff_tags.h"
 
 namespace weft::simulator {

@@ -7,7 +7,7 @@
 
 #include "simulator/camera/field_curvature.h"
 #include "simulator/camera/lateral_colour.h"
-#include "simulator/camera/veil.h"
+#include "simulator/camera/lens_veil.h"
 
 namespace weft::simulator {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "simulator/effects/passes.h"
-#include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/scene_rig.h"
 
 namespace weft::simulator {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 #include "simulator/light/incidence.h"
 #include "simulator/simulate.h"
 #include "tests/simulator/output.h"

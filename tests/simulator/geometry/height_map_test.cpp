@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 
 namespace weft::simulator {
 namespace {

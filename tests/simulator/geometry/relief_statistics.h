@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/vec.h"
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 
 // Slope, shadow and openness of a periodic surface by marching over a grid of its heights: slow, obvious and
 // independent of the simulator's ray casting.

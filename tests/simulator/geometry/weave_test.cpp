@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "simulator/geometry/surface.h"
+#include "simulator/geometry/scene_surface.h"
 #include "simulator/sampling/random.h"
 
 namespace weft::simulator {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/image_io/image_io.h"
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "tests/simulator/scene/scenes.h"
 
 namespace weft::simulator {

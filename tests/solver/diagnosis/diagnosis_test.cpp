@@ -10,7 +10,7 @@
 #include <string>
 #include <variant>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "core/rig/light_field.h"
 #include "solver/diagnosis/robust_fit.h"
 

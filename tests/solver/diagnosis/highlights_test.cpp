@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 
 namespace weft::solver {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "core/base/vec.h"
 
 namespace weft::solver {

@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "core/base/vec.h"
 #include "solver/height/grid.h"
 #include "tests/solver/height/surface.h"

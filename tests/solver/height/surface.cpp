@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "core/base/vec.h"
 
 namespace weft::test {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "core/base/vec.h"
 #include "tests/solver/height/surface.h"
 

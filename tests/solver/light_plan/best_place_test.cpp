@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "tests/solver/light_plan/ten_leds.h"
 
 namespace weft::solver {

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "solver/reflectance/lobe_fit.h"
 #include "solver/reflectance/pixel_fit.h"
 #include "tests/solver/light_plan/ten_leds.h"

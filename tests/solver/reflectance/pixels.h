@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "core/base/vec.h"
 #include "solver/reflectance/lobe_fit.h"
 

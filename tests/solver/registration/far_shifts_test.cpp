@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "core/base/vec.h"
 
 namespace weft::solver {

@@ -10,7 +10,7 @@
 #include <functional>
 #include <vector>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 #include "core/base/vec.h"
 #include "solver/sample_tiles.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/base/vec.h"
 #include "core/image/image.h"
-#include "solver/transport/lights.h"
+#include "solver/transport/light_directions.h"
 #include "solver/transport/relief.h"
 
 namespace weft::solver {

@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-#include "bench/oracles/rig.h"
+#include "bench/oracles/oracle_rig.h"
 
 namespace weft::solver {
 namespace {

@@ -13,7 +13,7 @@
 #include <span>
 #include <string>
 
-#include "capture/raw/decode.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/raw/tiff_tags.h"
 #include "core/base/files.h"
 #include "simulator/camera/saturation.h"

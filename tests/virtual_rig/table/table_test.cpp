@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "simulator/scene/rig.h"
+#include "simulator/scene/scene_rig.h"
 #include "tests/virtual_rig/small_scene.h"
 #include "virtual_rig/table/knock.h"
 

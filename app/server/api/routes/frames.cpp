@@ -10,7 +10,7 @@
 #include "app/server/api/bodies/scan_body.h"
 #include "app/server/api/routes/frame_tile.h"
 #include "app/server/api/routes/session_choice.h"
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 #include "library/catalogue/session_files.h"
 
 namespace weft::app {

@@ -4,7 +4,7 @@
 
 #include "app/server/api/api.h"
 #include "app/server/api/bodies/scan_body.h"
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 
 namespace weft::app {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "capture/scan/plan.h"
+#include "capture/scan/scan_plan.h"
 
 namespace weft::app {
 namespace {

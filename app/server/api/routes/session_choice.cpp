@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/server/api/bodies/scan_body.h"
-#include "capture/scan/plan.h"
+#include "capture/scan/scan_plan.h"
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
 #include "core/rig/calibration.h"

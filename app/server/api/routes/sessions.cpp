@@ -11,7 +11,7 @@
 #include "library/catalogue/session_files.h"
 #include "library/catalogue/session_name.h"
 #include "solve/session/current.h"
-#include "solve/session/left_out.h"
+#include "solve/session/left_out_shots.h"
 
 namespace weft::app {
 namespace {

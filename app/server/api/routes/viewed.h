@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "app/server/api/api.h"
-#include "app/server/view/layers.h"
 #include "app/server/view/probes.h"
+#include "app/server/view/viewed_maps.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"

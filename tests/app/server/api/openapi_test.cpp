@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "app/server/api/bodies/batch_place.h"
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 #include "core/base/files.h"
 #include "core/base/sha256.h"
 #include "exchange/presets/export_facts.h"

@@ -10,7 +10,7 @@
 #include "app/server/api/bodies/scan_body.h"
 #include "app/server/http/conditions.h"
 #include "app/server/http/cookies.h"
-#include "app/server/http/error_json.h"
+#include "app/server/http/error_reply.h"
 #include "app/server/http/request_frame.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -8,7 +8,7 @@
 
 #include "core/base/temporary_folder.h"
 #include "core/solve/solve.h"
-#include "solve/run/solve.h"
+#include "solve/run/solve_session.h"
 
 namespace weft::app {
 

@@ -14,7 +14,7 @@
 #include "core/image_io/image_io.h"
 #include "core/solve/solve_record.h"
 #include "core/solve/status_blend.h"
-#include "solve/report/reflectance.h"
+#include "solve/report/reflectance_report.h"
 
 namespace weft::app {
 namespace {

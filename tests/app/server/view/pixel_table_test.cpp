@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "app/server/view/layers.h"
 #include "app/server/view/probes.h"
+#include "app/server/view/viewed_maps.h"
 #include "tests/app/server/view/asked_session.h"
 
 namespace weft::app {

@@ -8,7 +8,7 @@
 
 #include "bench/oracles/rays/gather.h"
 #include "bench/oracles/rays/height_grid.h"
-#include "bench/oracles/rays/shadows.h"
+#include "bench/oracles/rays/ray_shadows.h"
 #include "tests/solver/transport/cloths.h"
 
 // What rays find of a cloth.

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "simulator/effects/passes.h"
+#include "simulator/scene/scene.h"
+#include "simulator/scene/scene_rig.h"
+
+namespace weft::simulator {
+
+/// What will be simulated, decided before anything is.
+struct Plan {
+  Scene scene;  ///< its effects are those that run
+  SceneRig rig;
+  std::vector<LeftOut> left_out;
+};
+
+/// Takes a scene's effects at its word, or with `effects = "auto"` decides them by their bounds. Errors as
+/// rig_of().
+Result<Plan> plan_of(const Scene& scene);
+
+/// Seconds of one thread that a left-out effect would have cost, from running the centre of the frame with it
+/// and without. An effect that could not run there would have cost nothing.
+double seconds_saved(const Plan& plan, const LeftOut& effect);
+
+}  // namespace weft::simulator
