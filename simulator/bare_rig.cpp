@@ -54,7 +54,7 @@ CapturePose plane_pose() {
 }
 
 Result<BareRig> BareRig::of(const Scene& given) {
-  const Result<Plan> plan = plan_of(given);
+  const Result<SimulationPlan> plan = plan_of(given);
   if (!plan) return plan.error();
   Scene scene = plan->scene;
   scene.fabric = "calibration";

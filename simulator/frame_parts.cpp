@@ -20,7 +20,7 @@ Result<void> check_memory(std::uint64_t bytes) {
   return no_memory(fmt::format("{} MB are needed, {} MB are free", bytes / kMegabyte, free / kMegabyte));
 }
 
-RawFrame frame_head(const Plan& plan, double exposure_us) {
+RawFrame frame_head(const SimulationPlan& plan, double exposure_us) {
   RawFrame frame;
   const Sensor& sensor = plan.rig.sensor;
   const DefectSettings defects = defects_of(plan.scene);
@@ -44,7 +44,7 @@ DngTags tags_of(const Scene& scene) {
   return tags;
 }
 
-void copy_counts(const Tile& tile, int y0, View<std::uint16_t> counts) {
+void copy_counts(const PassTile& tile, int y0, View<std::uint16_t> counts) {
   const auto row_length = static_cast<std::size_t>(tile.rect.width());
   const std::uint16_t* row = tile.counts.data();
   for (int y = tile.rect.y0; y < tile.rect.y1; ++y, row += row_length) {

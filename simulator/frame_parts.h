@@ -24,10 +24,10 @@ Error no_memory(const std::string& why);
 Result<void> check_memory(std::uint64_t bytes);
 
 /// What a raw file says beside its counts.
-RawFrame frame_head(const Plan& plan, double exposure_us);
+RawFrame frame_head(const SimulationPlan& plan, double exposure_us);
 DngTags tags_of(const Scene& scene);
 
 /// The counts of a tile, into a picture whose first row is row y0 of the frame.
-void copy_counts(const Tile& tile, int y0, View<std::uint16_t> counts);
+void copy_counts(const PassTile& tile, int y0, View<std::uint16_t> counts);
 
 }  // namespace weft::simulator

@@ -17,7 +17,7 @@ constexpr int kFarthestPixel = 1000 * 1000;
 }  // namespace
 
 Result<Rendering> render_readings(const Scene& scene, Rect area, const TileOptions& tiles) try {
-  const Result<Plan> plan = plan_of(scene);
+  const Result<SimulationPlan> plan = plan_of(scene);
   if (!plan) return plan.error();
   const auto inside = [](int from, int to) {
     return from >= -kFarthestPixel && to <= kFarthestPixel && from < to;
@@ -42,14 +42,14 @@ Result<Rendering> render_readings(const Scene& scene, Rect area, const TileOptio
   const Size size = {area.width(), area.height()};
   Rendering out = {Image<double>(size, 3 * static_cast<int>(leds.size())), Image<double>(size, 3),
                    Image<double>(size, 3), Image<double>(size)};
-  const auto put = [&](const Tile& tile, View<double> plane, const auto& value_of) {
+  const auto put = [&](const PassTile& tile, View<double> plane, const auto& value_of) {
     for_each_pixel(tile.rect,
                    [&](std::size_t i, int x, int y) { plane(x - area.x0, y - area.y0) = value_of(i); });
   };
   const Result<void> truth =
       PassRunner(std::move(*surface), tiles)
           .run(area, {}, {},
-               [&](const Tile& tile) {
+               [&](const PassTile& tile) {
                  put(tile, out.normal.plane(0), [&](std::size_t i) { return tile.surface[i].normal.x; });
                  put(tile, out.normal.plane(1), [&](std::size_t i) { return tile.surface[i].normal.y; });
                  put(tile, out.normal.plane(2), [&](std::size_t i) { return tile.surface[i].normal.z; });
@@ -64,8 +64,8 @@ Result<Rendering> render_readings(const Scene& scene, Rect area, const TileOptio
   const double exposure = plan->rig.exposure(scene.camera.iso);
   const Result<void> ran = PassRunner(std::move(*frames), tiles)
                                .run(
-                                   area, leds, {}, [](const Tile&) {},
-                                   [&](const Tile& tile) {
+                                   area, leds, {}, [](const PassTile&) {},
+                                   [&](const PassTile& tile) {
                                      for (std::size_t c = 0; c < 3; ++c) {
                                        put(tile, out.readings.plane(3 * (tile.led - 1) + static_cast<int>(c)),
                                            [&](std::size_t i) { return tile.samples[3 * i + c] / exposure; });

@@ -33,7 +33,7 @@ struct SimulationReport {
   int frames = 0;
   double exposure_us = 0;
   std::vector<PassCost> passes;  ///< in the order they run
-  std::vector<LeftOut> left_out;
+  std::vector<LeftOutEffect> left_out;
   double render_seconds = 0;  ///< wall time of the passes
   double write_seconds = 0;   ///< wall time of files: frames, truth, syncing
 };

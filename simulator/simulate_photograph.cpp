@@ -37,7 +37,7 @@ Result<void> simulate_frame(const Scene& scene, int led, const fs::path& file,
 
 Result<void> simulate_photograph(const Scene& scene, const PhotographSettings& photograph,
                                  const fs::path& file, const SimulateOptions& options) try {
-  const Result<Plan> plan = plan_of(scene);
+  const Result<SimulationPlan> plan = plan_of(scene);
   if (!plan) return plan.error();
   if (plan->scene.frames == FrameFormat::kExr) {
     return Error{ErrorKind::kUsage, "one frame alone is a raw file", "frames", "the scene's frames are EXR",
@@ -63,8 +63,8 @@ Result<void> simulate_photograph(const Scene& scene, const PhotographSettings& p
   frame.counts = Image<std::uint16_t>(size);
   PassRunner runner(std::move(*passes), options.tiles);
   Result<void> ran = runner.run(
-      {0, 0, size.width, size.height}, {&shot, 1}, options.stop, [](const Tile&) {},
-      [&](const Tile& tile) { copy_counts(tile, 0, frame.counts.plane()); });
+      {0, 0, size.width, size.height}, {&shot, 1}, options.stop, [](const PassTile&) {},
+      [&](const PassTile& tile) { copy_counts(tile, 0, frame.counts.plane()); });
   if (!ran) return ran;
   return write_dng(file, frame, tags_of(plan->scene));
 } catch (const std::bad_alloc&) {

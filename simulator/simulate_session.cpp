@@ -87,7 +87,7 @@ Polariser first_state(const FilmSettings& films) {
 
 /// In the order of capture: the LEDs, the repeat, brackets, the LEDs through parallel films where they were
 /// crossed before, the dark shot.
-std::vector<Exposure> exposures_of(const Plan& plan) {
+std::vector<Exposure> exposures_of(const SimulationPlan& plan) {
   const RetakeSettings& retakes = plan.scene.camera.retakes;
   const int leds = static_cast<int>(plan.rig.leds.leds.size());
   const double exposure_us = plan.rig.exposure_us;
@@ -108,7 +108,7 @@ std::vector<Exposure> exposures_of(const Plan& plan) {
 
 class SessionWriter {
  public:
-  SessionWriter(const Scene& scene, const Plan& plan, PassList surface, ShotPasses of_shots,
+  SessionWriter(const Scene& scene, const SimulationPlan& plan, PassList surface, ShotPasses of_shots,
                 const SimulateOptions& options)
       : given_(scene),
         plan_(plan),
@@ -246,7 +246,7 @@ class SessionWriter {
   Result<void> render_surface(TruthFiles& maps, int y0, int y1) {
     const Stopwatch timing(report_.render_seconds);
     return surface_runner_.run({0, y0, width(), y1}, {}, options_.stop,
-                               [&](const Tile& tile) {
+                               [&](const PassTile& tile) {
                                  maps.put(tile, 0, [&](std::size_t i) { return tile.surface[i].normal.x; });
                                  maps.put(tile, 1, [&](std::size_t i) { return tile.surface[i].normal.y; });
                                  maps.put(tile, 2, [&](std::size_t i) { return tile.surface[i].normal.z; });
@@ -261,7 +261,7 @@ class SessionWriter {
   }
 
   /// Targets on the cloth are matt.
-  void put_lobe(TruthFiles& maps, const Tile& tile) const {
+  void put_lobe(TruthFiles& maps, const PassTile& tile) const {
     const auto put = [&](int plane, double of_cloth, double of_target) {
       maps.put(tile, kTruthPlanes + plane, [&](std::size_t i) {
         return tile.target.empty() || tile.target[i] == kCloth ? of_cloth : of_target;
@@ -292,7 +292,7 @@ class SessionWriter {
     if (!light) return light.error();
     Result<void> written = for_each_band([&](int y0, int y1) {
       files->begin_band(y0);
-      const auto put = [&](const Tile& tile, int index) { files->put_samples(tile, 3 * index); };
+      const auto put = [&](const PassTile& tile, int index) { files->put_samples(tile, 3 * index); };
       if (Result<void> ok = render_frames(put, *light, y0, y1); !ok) return ok;
       const Stopwatch timing(report_.write_seconds);
       if (Result<void> ok = files->write_band(y1 - y0); !ok) return ok;
@@ -322,7 +322,7 @@ class SessionWriter {
     if (!light) return light.error();
     Image<std::uint16_t> counts({width(), std::min(band_rows_, height())}, frames());
     Result<void> written = for_each_band([&](int y0, int y1) {
-      const auto put = [&](const Tile& tile, int index) { copy_counts(tile, y0, counts.plane(index)); };
+      const auto put = [&](const PassTile& tile, int index) { copy_counts(tile, y0, counts.plane(index)); };
       if (Result<void> ok = render_frames(put, *light, y0, y1); !ok) return ok;
       const Stopwatch timing(report_.write_seconds);
       for (int index = 0; index < frames(); ++index) {
@@ -366,8 +366,8 @@ class SessionWriter {
       }
       if (shots.empty()) continue;
       const Result<void> ok = shot_runners_[kind].run(
-          {0, y0, width(), y1}, shots, options_.stop, [](const Tile&) {},
-          [&](const Tile& tile) {
+          {0, y0, width(), y1}, shots, options_.stop, [](const PassTile&) {},
+          [&](const PassTile& tile) {
             const auto taken = std::find_if(exposures_.begin(), exposures_.end(),
                                             [&](const Exposure& e) { return e.shot == tile.shot; });
             put(tile, static_cast<int>(taken - exposures_.begin()));
@@ -378,7 +378,7 @@ class SessionWriter {
     return {};
   }
 
-  void put_light(TruthFiles& light, const Tile& tile) const {
+  void put_light(TruthFiles& light, const PassTile& tile) const {
     int plane = (tile.led - 1) * planes_of_led();
     if (scene_.effects.cast_shadows) {
       light.put(tile, plane++, [&](std::size_t i) { return tile.visibility[i]; });
@@ -431,7 +431,7 @@ class SessionWriter {
   }
 
   const Scene& given_;  ///< as it was asked for
-  const Plan& plan_;
+  const SimulationPlan& plan_;
   const Scene& scene_;  ///< as it is simulated
   const SimulateOptions& options_;
   std::vector<Exposure> exposures_;
@@ -449,7 +449,7 @@ class SessionWriter {
 
 Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& session_folder,
                                           const SimulateOptions& options) try {
-  const Result<Plan> plan = plan_of(scene);
+  const Result<SimulationPlan> plan = plan_of(scene);
   if (!plan) return plan.error();
   if (session_folder.empty()) {
     return Error{ErrorKind::kUsage, "no session folder", "simulation", "its name is empty",
@@ -475,7 +475,7 @@ Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& se
 }
 
 Result<void> simulate_truth(const Scene& scene, const fs::path& session, const SimulateOptions& options) try {
-  const Result<Plan> plan = plan_of(scene);
+  const Result<SimulationPlan> plan = plan_of(scene);
   if (!plan) return plan.error();
   Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
   if (!surface) return surface.error();

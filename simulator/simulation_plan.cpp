@@ -30,8 +30,8 @@ EffectSettings all_effects(const Scene& scene) {
   return all;
 }
 
-std::vector<LeftOut> unnamed(const EffectSettings& effects) {
-  std::vector<LeftOut> left_out;
+std::vector<LeftOutEffect> unnamed(const EffectSettings& effects) {
+  std::vector<LeftOutEffect> left_out;
   for (const EffectKey& effect : effect_keys()) {
     if (!(effects.*effect.on)) left_out.push_back({effect.name, "the scene does not name it"});
   }
@@ -46,7 +46,7 @@ double seconds_of(const Scene& scene, const SceneRig& rig, Rect area) {
   std::vector<int> leds(rig.leds.leds.size());
   std::iota(leds.begin(), leds.end(), 1);
   const Result<void> ran = runner.run(
-      area, leds, {}, [](const Tile&) {}, [](const Tile&) {});
+      area, leds, {}, [](const PassTile&) {}, [](const PassTile&) {});
   const std::vector<PassCost> costs = runner.costs();
   if (!ran) return 0;
   return std::accumulate(costs.begin(), costs.end(), 0.0,
@@ -55,8 +55,8 @@ double seconds_of(const Scene& scene, const SceneRig& rig, Rect area) {
 
 }  // namespace
 
-Result<Plan> plan_of(const Scene& scene) {
-  Plan plan = {scene, {}, {}};
+Result<SimulationPlan> plan_of(const Scene& scene) {
+  SimulationPlan plan = {scene, {}, {}};
   if (scene.auto_to_sigma) {
     plan.scene.auto_to_sigma.reset();
     plan.scene.effects = all_effects(scene);
@@ -72,7 +72,7 @@ Result<Plan> plan_of(const Scene& scene) {
   return plan;
 }
 
-double seconds_saved(const Plan& plan, const LeftOut& effect) {
+double seconds_saved(const SimulationPlan& plan, const LeftOutEffect& effect) {
   constexpr int kProbe = 96;
   Scene with = plan.scene;
   for (const EffectKey& key : effect_keys()) {

@@ -13,18 +13,18 @@
 namespace weft::simulator {
 
 /// What will be simulated, decided before anything is.
-struct Plan {
+struct SimulationPlan {
   Scene scene;  ///< its effects are those that run
   SceneRig rig;
-  std::vector<LeftOut> left_out;
+  std::vector<LeftOutEffect> left_out;
 };
 
 /// Takes a scene's effects at its word, or with `effects = "auto"` decides them by their bounds. Errors as
 /// rig_of().
-Result<Plan> plan_of(const Scene& scene);
+Result<SimulationPlan> plan_of(const Scene& scene);
 
 /// Seconds of one thread that a left-out effect would have cost, from running the centre of the frame with it
 /// and without. An effect that could not run there would have cost nothing.
-double seconds_saved(const Plan& plan, const LeftOut& effect);
+double seconds_saved(const SimulationPlan& plan, const LeftOutEffect& effect);
 
 }  // namespace weft::simulator

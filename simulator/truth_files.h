@@ -45,7 +45,7 @@ class TruthFiles {
 
   /// value_of(index in the tile's area) for each pixel that the tile was asked for.
   template <typename Value>
-  void put(const Tile& tile, int plane, const Value& value_of) {
+  void put(const PassTile& tile, int plane, const Value& value_of) {
     const View<float> view = planes_.plane(plane);
     for_each_pixel(tile.rect, [&](std::size_t, int x, int y) {
       view(x, y - y0_) = static_cast<float>(value_of(index_in(tile.area, x, y)));
@@ -53,7 +53,7 @@ class TruthFiles {
   }
 
   /// The samples R, G, B of each pixel that the tile was asked for, into three planes.
-  void put_samples(const Tile& tile, int plane) {
+  void put_samples(const PassTile& tile, int plane) {
     for (int c = 0; c < 3; ++c) {
       const View<float> view = planes_.plane(plane + c);
       for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) {

@@ -130,7 +130,7 @@ std::optional<double> pixels_in(const std::string& word) {
 
 class RunningRig : public VirtualRig {
  public:
-  RunningRig(const VirtualRigOptions& options, Table table, SceneLight light, RigFolder folder)
+  RunningRig(const VirtualRigOptions& options, RigTable table, SceneLight light, RigFolder folder)
       : options_(options),
         table_(std::move(table)),
         seen_(light.frames.scene()),
@@ -409,7 +409,7 @@ class RunningRig : public VirtualRig {
   }
 
   VirtualRigOptions options_;
-  const Table table_;
+  const RigTable table_;
   std::mutex changing_;            // of blur_px_, knocks_ and seen_: one change at a time
   std::optional<double> blur_px_;  // as the focus ring was turned; else as the scene has it
   Knocks knocks_;
@@ -437,7 +437,7 @@ Result<std::unique_ptr<VirtualRig>> VirtualRig::start(const VirtualRigOptions& o
   Result<SceneLight> light = light_of(scene, options);
   if (!light) return light.error();
   if (Result<void> ok = check_leds(light->frames); !ok) return ok.error();
-  Result<Table> table = Table::of(scene);
+  Result<RigTable> table = RigTable::of(scene);
   if (!table) return table.error();
   auto rig = std::make_unique<RunningRig>(options, std::move(*table), std::move(*light), std::move(*folder));
   if (Result<void> ok = rig->start(); !ok) return ok.error();

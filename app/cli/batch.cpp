@@ -57,7 +57,7 @@ Result<void> add_found(const PlanArguments& a, const CommonArguments& common,
   query.words = a.find;
   query.limit = 1000;
   do {
-    const Result<library::Page> page = catalogue->find(query);
+    const Result<library::CataloguePage> page = catalogue->find(query);
     if (!page) return page.error();
     for (const library::Entry& entry : page->entries) sessions.push_back(entry.folder.string());
     query.after = page->after;

@@ -54,7 +54,7 @@ void print_changes(const BatchState& state) {
   print("  mean   95 %    albedo  session");
   for (std::size_t i = 0; i < std::min(kMostShown, s.changed.size()); ++i) {
     const batch::Row& row = state.rows[s.changed[i]];
-    const batch::Change& change = *row.result->change;
+    const batch::MapChange& change = *row.result->change;
     print(fmt::format("{:>6.3g} {:>6.3g} {:>+7.2f} %  {}  {}", change.mean_deg, change.p95_deg,
                       100 * change.albedo_bias_rel, std::filesystem::path(row.job->session).stem().string(),
                       fmt::join(batch::regressions(change), "; ")));

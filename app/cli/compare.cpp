@@ -87,7 +87,7 @@ void print_comparison(const std::vector<NumberComparison>& all, bool json) {
 
 // Two solves by all that a batch says of a session: the tested one is the new one.
 Result<int> compare_two_solves(const CompareArguments& a, const CommonArguments& common) {
-  const Result<batch::Change> change = compare_solves(a.truth, a.tested, common.threads);
+  const Result<batch::MapChange> change = compare_solves(a.truth, a.tested, common.threads);
   if (!change) return change.error();
   const std::vector<std::string> worse = batch::regressions(*change);
   if (common.json) {

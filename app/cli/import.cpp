@@ -36,7 +36,7 @@ std::string led_words(int led) {
 }
 
 // A line a frame: its LED where there is a decision, else what each opinion says.
-void print_frames(const PlannedSession& session) {
+void print_frames(const ProposedSession& session) {
   const LedDecision& decision = session.decision;
   if (decision.leds.empty() && decision.opinions.empty()) return;
   std::size_t width = 5;
@@ -59,7 +59,7 @@ void print_frames(const PlannedSession& session) {
   }
 }
 
-void print_session(const PlannedSession& session) {
+void print_session(const ProposedSession& session) {
   const std::string name = session.session.folder.filename().string();
   switch (session.state) {
     case ImportState::kNew:
@@ -80,9 +80,9 @@ void print_session(const PlannedSession& session) {
   for (const std::string& warning : session.warnings) print("  warning: " + warning);
 }
 
-void print_import(const ImportPlan& plan) {
-  for (const PlannedSession& session : plan.sessions) print_session(session);
-  for (const PlannedPhotographs& each : plan.photographs) {
+void print_import(const ImportProposal& plan) {
+  for (const ProposedSession& session : plan.sessions) print_session(session);
+  for (const ProposedPhotographs& each : plan.photographs) {
     const std::string name = each.folder.filename().string();
     if (each.refusal) {
       print(fmt::format("{}: refused. {}", name, each.refusal->message()));
@@ -100,12 +100,12 @@ void print_import(const ImportPlan& plan) {
                     plan.count(ImportState::kThere), plan.count(ImportState::kRefused)));
 }
 
-int ending_of(const ImportPlan& plan) {
+int ending_of(const ImportProposal& plan) {
   const std::optional<Error> refusal = plan.first_refusal();
   return refusal ? exit_code_of(refusal->kind) : kDone;
 }
 
-Result<void> ask(const ImportPlan& plan) {
+Result<void> ask(const ImportProposal& plan) {
   note(fmt::format("import into {}? [y/N]", plan.archive.string()));
   const std::optional<std::string> answer = typed_line(stop_on_signal());
   if (answer && (*answer == "y" || *answer == "yes")) return {};
@@ -121,7 +121,7 @@ Result<int> import_folders(ImportArguments& a, const CommonArguments& common) {
     return Error{ErrorKind::kUsage, "--json asks nothing", "--json", "",
                  "say --yes to import, or --dry-run to look only"};
   }
-  const Result<ImportPlan> plan = [&] {
+  const Result<ImportProposal> plan = [&] {
     ProgressLine line(common.quiet);
     return plan_import(a.import, {common.threads, stop_on_signal(), line.callback()});
   }();

@@ -69,7 +69,7 @@ Result<int> find(const FindArguments& a, const CommonArguments& common) {
   library::Query query = a.query;
   for (const std::string& word : a.words) query.words += word + " ";
   if (a.after) query.after = *a.after;
-  const Result<library::Page> page = catalogue->find(query);
+  const Result<library::CataloguePage> page = catalogue->find(query);
   if (!page) return page.error();
   if (common.json) {
     Json sessions = Json::array();
@@ -137,7 +137,7 @@ Result<library::Edits> user_edits() {
   return library::Edits::open(file);
 }
 
-Result<int> print_change(const library::Change& change, const CommonArguments& common) {
+Result<int> print_change(const library::MetadataChange& change, const CommonArguments& common) {
   if (common.json) {
     print_json({{"session", change.folder.string()},
                 {"before", change.before},
@@ -174,7 +174,7 @@ Result<int> tag(const TagArguments& a, const CommonArguments& common) {
   if (!fields) return fields.error();
   Result<library::Edits> edits = user_edits();
   if (!edits) return std::move(edits).error();
-  const Result<library::Change> change = library::change_metadata(entry->folder, *fields);
+  const Result<library::MetadataChange> change = library::change_metadata(entry->folder, *fields);
   if (!change) return change.error();
   if (!change->after.empty()) {
     const char* user = std::getenv("USER");
@@ -186,7 +186,7 @@ Result<int> tag(const TagArguments& a, const CommonArguments& common) {
 Result<int> take_back(bool again, const CommonArguments& common) {
   Result<library::Edits> edits = user_edits();
   if (!edits) return std::move(edits).error();
-  const Result<library::Change> change = again ? edits->redo() : edits->undo();
+  const Result<library::MetadataChange> change = again ? edits->redo() : edits->undo();
   if (!change) return change.error();
   return print_change(*change, common);
 }
@@ -200,7 +200,7 @@ Result<int> rebuild(const LibraryPlace& place, const CommonArguments& common) {
   }
   Result<Catalogue> catalogue = fresh_catalogue(place, common);
   if (!catalogue) return std::move(catalogue).error();
-  const Result<library::Page> page = catalogue->find({.limit = 1});
+  const Result<library::CataloguePage> page = catalogue->find({.limit = 1});
   if (!page) return page.error();
   if (common.json) {
     print_json({{"catalogue", file.string()}, {"sessions", page->total}});
@@ -219,7 +219,7 @@ Result<int> prune(const PruneArguments& a, const CommonArguments& common) {
   Json pruned = Json::array();
   std::uint64_t bytes = 0;
   do {
-    const Result<library::Page> page = catalogue->find(query);
+    const Result<library::CataloguePage> page = catalogue->find(query);
     if (!page) return page.error();
     for (const Entry& entry : page->entries) {
       if (entry.solves <= a.keep || entry.state == "unreadable") continue;

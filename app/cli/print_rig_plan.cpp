@@ -22,7 +22,7 @@ std::string cell_of(double value, const char* pattern) {
 }
 
 void print_rig_plan(const RigPlan& plan) {
-  const solver::PlannedCloth& cloth = plan.cloth.cloth;
+  const solver::ForeseenCloth& cloth = plan.cloth.cloth;
   const bool is_pile = cloth.lobe.family == solver::LobeFamily::kCloth;
   print(fmt::format("{} under the {} LEDs of {}; albedo {:g}, mean slope {:g} degrees; standard deviations:",
                     plan.cloth.name, plan.planned.leds.size(), plan.rig, cloth.albedo, cloth.relief_deg));

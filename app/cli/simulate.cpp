@@ -21,9 +21,9 @@
 namespace weft::app {
 namespace {
 
-using simulator::LeftOut;
+using simulator::LeftOutEffect;
 using simulator::PassCost;
-using simulator::Plan;
+using simulator::SimulationPlan;
 
 struct SimulateArguments {
   std::filesystem::path scene;
@@ -38,7 +38,7 @@ constexpr double kWorthTelling_s = 0.05;
 
 /// What runs and what does not, known before the run.
 struct Explanation {
-  Plan plan;
+  SimulationPlan plan;
   simulator::PassList passes;
   // Only where bounds decided:
   simulator::EffectBounds bounds;
@@ -46,7 +46,7 @@ struct Explanation {
 };
 
 Result<Explanation> explain(const simulator::Scene& scene) {
-  Result<Plan> plan = simulator::plan_of(scene);
+  Result<SimulationPlan> plan = simulator::plan_of(scene);
   if (!plan) return plan.error();
   Result<simulator::PassList> passes =
       simulator::build_passes(plan->scene, plan->rig, simulator::Output::kCounts);
@@ -54,7 +54,7 @@ Result<Explanation> explain(const simulator::Scene& scene) {
   Explanation explanation = {std::move(*plan), std::move(*passes), {}, {}};
   if (scene.auto_to_sigma) {
     explanation.bounds = simulator::bounds_of(explanation.plan.scene, explanation.plan.rig);
-    for (const LeftOut& effect : explanation.plan.left_out) {
+    for (const LeftOutEffect& effect : explanation.plan.left_out) {
       explanation.saved_seconds.push_back(simulator::seconds_saved(explanation.plan, effect));
     }
   }
@@ -81,7 +81,7 @@ void print_plan(const Explanation& explanation, const simulator::Scene& scene) {
   print(scene.auto_to_sigma ? "\nleft out         sigma at most  thread-seconds saved  why"
                             : "\nleft out         why");
   for (std::size_t i = 0; i < explanation.plan.left_out.size(); ++i) {
-    const LeftOut& effect = explanation.plan.left_out[i];
+    const LeftOutEffect& effect = explanation.plan.left_out[i];
     if (!scene.auto_to_sigma) {
       print(fmt::format("{:<16} {}", effect.name, effect.why));
       continue;
@@ -110,7 +110,7 @@ Json json_of(const simulator::SimulationReport& report) {
                       {"does", pass.does},
                       {"seconds", pass.seconds}});
   }
-  for (const LeftOut& effect : report.left_out) {
+  for (const LeftOutEffect& effect : report.left_out) {
     left_out.push_back({{"effect", effect.name}, {"why", effect.why}, {"bound_sigma", effect.bound_sigma}});
   }
   return {{"passes", std::move(passes)}, {"left_out", std::move(left_out)}};

@@ -101,7 +101,7 @@ Result<Rows> accuracy_table(const AccuracyTableOptions& options) {
   }
   std::vector<Rows> by_scene;
   for (const AccuracyScene& scene : *scenes) {
-    Result<std::vector<Patch>> patches = render_patches(scene, threads);
+    Result<std::vector<ClothPatch>> patches = render_patches(scene, threads);
     if (!patches) return std::move(patches).error();
     const BoundedPatches bounded = with_bounds(std::move(*patches), threads);
     Rows& rows = by_scene.emplace_back();
@@ -134,12 +134,12 @@ Result<Rows> accuracy_by_leds(const AccuracyTableOptions& options) {
   const int threads = resolved_threads(options.threads);
   std::vector<Rows> rows(choices.size() * all->size());  // a list of scenes for each choice and contender
   for (const AccuracyScene& scene : *scenes) {
-    const Result<std::vector<Patch>> patches = render_patches(scene, threads);
+    const Result<std::vector<ClothPatch>> patches = render_patches(scene, threads);
     if (!patches) return patches.error();
     for (std::size_t n = 0; n < choices.size(); ++n) {
-      std::vector<Patch> fewer;
-      for (const Patch& patch : *patches) {
-        Result<Patch> chosen = with_lights(patch, choices[n]);
+      std::vector<ClothPatch> fewer;
+      for (const ClothPatch& patch : *patches) {
+        Result<ClothPatch> chosen = with_lights(patch, choices[n]);
         if (!chosen) return std::move(chosen).error();
         fewer.push_back(std::move(*chosen));
       }
@@ -197,7 +197,7 @@ Result<Rows> accuracy_curves(const AccuracyTableOptions& options) {
   const int threads = resolved_threads(options.threads);
   std::vector<Rows> scored(all.size());
   for (const AccuracyScene& scene : accuracy_scenes(options.set, options.seed, options.quick)) {
-    Result<std::vector<Patch>> patches = render_patches(scene, threads);
+    Result<std::vector<ClothPatch>> patches = render_patches(scene, threads);
     if (!patches) return std::move(patches).error();
     const BoundedPatches bounded = with_bounds(std::move(*patches), threads);
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -228,7 +228,7 @@ Result<Rows> accuracy_gates(const AccuracyTableOptions& options) {
   const int threads = resolved_threads(options.threads);
   Rows table;
   for (const AccuracyScene& scene : accuracy_scenes(options.set, options.seed, options.quick)) {
-    Result<std::vector<Patch>> patches = render_patches(scene, threads);
+    Result<std::vector<ClothPatch>> patches = render_patches(scene, threads);
     if (!patches) return std::move(patches).error();
     const BoundedPatches bounded = with_bounds(std::move(*patches), threads);
     for (const Contender& contender : both) {
@@ -314,7 +314,7 @@ struct Share {
   std::string scene;
 };
 
-double specular_share(const Patch& patch, const SolvedMaps& maps) {
+double specular_share(const ClothPatch& patch, const SolvedMaps& maps) {
   const Rect part = patch.measured();
   double specular = 0;
   for (int y = part.y0; y < part.y1; ++y) {
@@ -350,7 +350,7 @@ Result<Rows> specular_warnings(const AccuracyTableOptions& options) {
     for (const AccuracyScene& scene : accuracy_scenes(options.set, seed, true)) {
       const bool is_dark = scene.material == "dark-satin";
       if (!is_dark && seed > kOtherSeeds) continue;
-      const Result<Patch> patch = render_patch(scene.scene, scene.patches.front(), threads);
+      const Result<ClothPatch> patch = render_patch(scene.scene, scene.patches.front(), threads);
       if (!patch) return patch.error();
       for (std::size_t i = 0; i < all->size(); ++i) {
         SolvedMaps maps(patch->size());
@@ -385,7 +385,7 @@ Result<std::vector<const solver::MethodName*>> levels_of(const std::vector<std::
   return levels;
 }
 
-Result<Patch> frame_of_cloth(const std::string& name, Size size, int threads) {
+Result<ClothPatch> frame_of_cloth(const std::string& name, Size size, int threads) {
   AccuracyTableOptions chosen;
   chosen.scene = name;
   const Result<std::vector<AccuracyScene>> cloth = chosen_scenes(chosen);
@@ -426,7 +426,7 @@ Result<Rows> level_speed(const AccuracyTableOptions& options) {
   Rows rows;
   const std::vector<std::string> cloths = options.scene.empty() ? kCloths : std::vector{options.scene};
   for (const std::string& cloth : cloths) {
-    const Result<Patch> frame = frame_of_cloth(cloth, size, threads);
+    const Result<ClothPatch> frame = frame_of_cloth(cloth, size, threads);
     if (!frame) return frame.error();
     for (const solver::MethodName* level : *levels) {
       SolvedMaps maps(size);

@@ -40,7 +40,7 @@ constexpr Material kMaterials[] = {{"lambert", nullptr, 0.5},  {"white", nullptr
 MaterialSettings settings_of(const Material& material) {
   MaterialSettings settings;
   if (material.preset != nullptr) {
-    const Preset preset = *simulator::preset(material.preset);
+    const ClothPreset preset = *simulator::preset(material.preset);
     settings.reflectance = preset.reflectance;
     settings.albedo = preset.albedo;
   }
@@ -82,7 +82,7 @@ std::vector<Rect> patches_of(const CameraSettings& camera, bool quick) {
   return {centre, at(camera.width - side - 64, 64)};
 }
 
-RawFrame frame_of(const Plan& plan, Size size) {
+RawFrame frame_of(const SimulationPlan& plan, Size size) {
   const Sensor& sensor = plan.rig.sensor;
   RawFrame frame;
   frame.counts = Image<std::uint16_t>(size);
@@ -118,7 +118,7 @@ RawFrame copy_of(const RawFrame& frame) {
 }
 
 // Counts of all LEDs through parallel films.
-Result<void> run_parallel(const Plan& plan, Rect area, int threads, pipeline::Mosaics& mosaics) {
+Result<void> run_parallel(const SimulationPlan& plan, Rect area, int threads, pipeline::Mosaics& mosaics) {
   SceneRig rig = plan.rig;
   rig.lobe_share = lobe_share_of(plan.scene.films, FilmStates::kParallel);
   Result<PassList> passes = build_passes(plan.scene, rig, Output::kCounts);
@@ -126,9 +126,9 @@ Result<void> run_parallel(const Plan& plan, Rect area, int threads, pipeline::Mo
   std::vector<int> shots(plan.rig.leds.leds.size());
   // As a session numbers them: other shots than the crossed ones, with other noise.
   std::iota(shots.begin(), shots.end(), 3 * static_cast<int>(shots.size()) + 1);
-  const auto nothing = [](const Tile&) {};
+  const auto nothing = [](const PassTile&) {};
   return PassRunner(std::move(*passes), {.threads = threads})
-      .run(area, shots, {}, nothing, [&](const Tile& tile) {
+      .run(area, shots, {}, nothing, [&](const PassTile& tile) {
         RawFrame& frame = mosaics.frames[static_cast<std::size_t>(tile.led - 1)];
         for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) {
           frame.counts(x - area.x0, y - area.y0) = tile.counts[i];
@@ -137,15 +137,15 @@ Result<void> run_parallel(const Plan& plan, Rect area, int threads, pipeline::Mo
 }
 
 // Counts and truth, as the passes of the scene leave them.
-Result<void> run_passes(const Plan& plan, Rect area, int threads, Patch& patch) {
+Result<void> run_passes(const SimulationPlan& plan, Rect area, int threads, ClothPatch& patch) {
   Result<PassList> passes = build_passes(plan.scene, plan.rig, Output::kCounts);
   if (!passes) return passes.error();
-  const auto put = [&](const Tile& tile, auto view, const auto& value_of) {
+  const auto put = [&](const PassTile& tile, auto view, const auto& value_of) {
     for_each_pixel(tile.rect, [&](std::size_t, int x, int y) {
       view(x - area.x0, y - area.y0) = static_cast<float>(value_of(index_in(tile.area, x, y)));
     });
   };
-  const auto put_surface = [&](const Tile& tile) {
+  const auto put_surface = [&](const PassTile& tile) {
     put(tile, patch.normal.plane(0), [&](std::size_t i) { return tile.surface[i].normal.x; });
     put(tile, patch.normal.plane(1), [&](std::size_t i) { return tile.surface[i].normal.y; });
     put(tile, patch.normal.plane(2), [&](std::size_t i) { return tile.surface[i].normal.z; });
@@ -155,7 +155,7 @@ Result<void> run_passes(const Plan& plan, Rect area, int threads, Patch& patch) 
     put(tile, patch.openness.plane(),
         [&](std::size_t i) { return tile.openness.empty() ? 1 : tile.openness[i]; });
   };
-  const auto put_shot = [&](const Tile& tile) {
+  const auto put_shot = [&](const PassTile& tile) {
     const bool dark = tile.led == 0;
     const int k = tile.led - 1;
     pipeline::Mosaics& mosaics = *patch.photographs.mosaics();
@@ -192,8 +192,8 @@ std::vector<AccuracyScene> accuracy_scenes(SceneSet set, std::uint32_t seed, boo
   return scenes;
 }
 
-Result<Patch> render_patch(const Scene& scene, Rect area, int threads) {
-  const Result<Plan> plan = plan_of(scene);
+Result<ClothPatch> render_patch(const Scene& scene, Rect area, int threads) {
+  const Result<SimulationPlan> plan = plan_of(scene);
   if (!plan) return plan.error();
   const Calibration exact = exact_calibration(plan->scene, plan->rig);
   const double height_mm = scene.geometry.cloth_height_mm;
@@ -203,7 +203,7 @@ Result<Patch> render_patch(const Scene& scene, Rect area, int threads) {
   if (!field) return std::move(field).error();
   const Size size = {area.width(), area.height()};
   const auto lights = static_cast<int>(field->count());
-  Patch patch;
+  ClothPatch patch;
   patch.photographs.camera = camera;
   patch.readings = Image<float>(size, lights);
   patch.visible = Image<float>(size, lights);
@@ -234,13 +234,13 @@ Result<Patch> render_patch(const Scene& scene, Rect area, int threads) {
   return patch;
 }
 
-Result<Patch> with_lights(const Patch& patch, const std::vector<int>& numbers) {
+Result<ClothPatch> with_lights(const ClothPatch& patch, const std::vector<int>& numbers) {
   Result<Lights> lights = select_lights(patch.field().lights(), numbers);
   if (!lights) return std::move(lights).error();
   Result<LightField> field = LightField::make(std::move(*lights), patch.photographs.camera, patch.size(),
                                               patch.field().cloth_height_mm());
   if (!field) return std::move(field).error();
-  Patch fewer;
+  ClothPatch fewer;
   fewer.normal = copy_of(patch.normal);
   fewer.albedo = copy_of(patch.albedo);
   fewer.openness = copy_of(patch.openness);
@@ -262,11 +262,11 @@ Result<Patch> with_lights(const Patch& patch, const std::vector<int>& numbers) {
   return fewer;
 }
 
-Result<std::vector<Patch>> render_patches(const AccuracyScene& scene, int threads) {
-  std::vector<std::optional<Result<Patch>>> rendered(scene.patches.size());
+Result<std::vector<ClothPatch>> render_patches(const AccuracyScene& scene, int threads) {
+  std::vector<std::optional<Result<ClothPatch>>> rendered(scene.patches.size());
   parallel_for(rendered.size(), threads,
                [&](std::size_t i, int) { rendered[i] = render_patch(scene.scene, scene.patches[i], 1); });
-  std::vector<Patch> patches;
+  std::vector<ClothPatch> patches;
   for (auto& patch : rendered) {
     if (!patch->has_value()) return std::move(*patch).error();
     patches.push_back(std::move(*patch).value());

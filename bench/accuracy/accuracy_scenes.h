@@ -36,7 +36,7 @@ struct AccuracyScene {
 std::vector<AccuracyScene> accuracy_scenes(SceneSet set, std::uint32_t seed, bool quick);
 
 /// One patch of a scene as a picture of its own: what the product would hold of it, and the truth.
-struct Patch {
+struct ClothPatch {
   pipeline::Photographs photographs;  ///< mosaics of counts and the dark shot, with the exact light field
   Image<float> readings;              ///< plane k: light k as the product reads it
   Image<float> visible;               ///< plane k: 1 where the point faces light k and sees it, else 0
@@ -53,13 +53,13 @@ struct Patch {
   static constexpr int kEdge = 16;
 };
 
-Result<Patch> render_patch(const simulator::Scene& scene, Rect area, int threads);
+Result<ClothPatch> render_patch(const simulator::Scene& scene, Rect area, int threads);
 
 /// The same patch from fewer lights, numbered from 1; `patch` must outlive it, as it lends its dark shot.
-Result<Patch> with_lights(const Patch& patch, const std::vector<int>& numbers);
+Result<ClothPatch> with_lights(const ClothPatch& patch, const std::vector<int>& numbers);
 
 /// The patches of a scene, several at once.
-Result<std::vector<Patch>> render_patches(const AccuracyScene& scene, int threads);
+Result<std::vector<ClothPatch>> render_patches(const AccuracyScene& scene, int threads);
 
 /// A rig and the cloth on it, with what is not as it should be.
 struct ChainCase {

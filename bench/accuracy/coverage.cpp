@@ -53,7 +53,7 @@ struct Coverage {
 // Errors of the rows of a band.
 class Gatherer {
  public:
-  Gatherer(const Patch& patch, Size maps)
+  Gatherer(const ClothPatch& patch, Size maps)
       : patch_(patch),
         scale_(patch.size().width / maps.width),
         normal_(maps, 3),
@@ -95,7 +95,7 @@ class Gatherer {
   }
 
  private:
-  const Patch& patch_;
+  const ClothPatch& patch_;
   int scale_;
   Image<float> normal_, sigma_;
   Image<std::uint16_t> status_;
@@ -148,7 +148,7 @@ Json coverage_of(std::span<const StatedError> pixels) {
           {"each_tenth_holds", each_holds}};
 }
 
-Result<std::vector<StatedError>> stated_errors(const Patch& patch, const solver::MethodName& level,
+Result<std::vector<StatedError>> stated_errors(const ClothPatch& patch, const solver::MethodName& level,
                                                int threads) {
   const bool is_half = level.extent == solver::Extent::kHalfSize;
   Result<pipeline::Photographs> half = pipeline::Photographs();
@@ -172,11 +172,11 @@ Result<Rows> coverage_table(const AccuracyTableOptions& options) {
   if (!scenes) return scenes.error();
   Rows rows;
   for (const AccuracyScene& scene : *scenes) {
-    const Result<std::vector<Patch>> patches = render_patches(scene, threads);
+    const Result<std::vector<ClothPatch>> patches = render_patches(scene, threads);
     if (!patches) return patches.error();
     for (const solver::MethodName* level : *levels) {
       std::vector<StatedError> pixels;
-      for (const Patch& patch : *patches) {
+      for (const ClothPatch& patch : *patches) {
         const Result<std::vector<StatedError>> errors = stated_errors(patch, *level, threads);
         if (!errors) return errors.error();
         pixels.insert(pixels.end(), errors->begin(), errors->end());
@@ -195,12 +195,12 @@ Result<Rows> explain_table(const AccuracyTableOptions& options) {
   const int threads = resolved_threads(options.threads);
   Rows rows;
   for (const AccuracyScene& scene : accuracy_scenes(options.set, options.seed, options.quick)) {
-    const Result<std::vector<Patch>> patches = render_patches(scene, threads);
+    const Result<std::vector<ClothPatch>> patches = render_patches(scene, threads);
     if (!patches) return patches.error();
     for (const solver::MethodName& level : solver::method_names()) {
       if (!level.level) continue;
       double predicted = 0, real = 0, pixels = 0;
-      for (const Patch& patch : *patches) {
+      for (const ClothPatch& patch : *patches) {
         const Result<std::vector<StatedError>> errors = stated_errors(patch, level, threads);
         if (!errors) return errors.error();
         for (const StatedError& pixel : *errors) {

@@ -34,7 +34,7 @@ Json coverage_of(std::span<const StatedError> pixels);
 
 /// The errors of a level on a patch, of all pixels with a solution in what is measured. A pixel of a preview
 /// is held against the four it stands for.
-Result<std::vector<StatedError>> stated_errors(const Patch& patch, const solver::MethodName& level,
+Result<std::vector<StatedError>> stated_errors(const ClothPatch& patch, const solver::MethodName& level,
                                                int threads);
 
 /// `normal_deg` of sigma.exr against the truth: a row for each scene and level, with coverage_of() both its

@@ -205,7 +205,7 @@ AccuracyScene scene_of(AccuracyScene scene, const GlossyCloth& cloth) {
 }
 
 // Every LED half a percent brighter or darker than it is said to be, and 1 mm from where it is said to stand.
-Result<void> put_off(Patch& patch) {
+Result<void> put_off(ClothPatch& patch) {
   NearLights lights = std::get<NearLights>(patch.field().lights());
   for (std::size_t k = 0; k < lights.leds.size(); ++k) {
     const auto number = static_cast<std::uint32_t>(k);
@@ -226,11 +226,11 @@ Result<void> put_off(Patch& patch) {
 
 // The same cloth as it lies otherwise, in the middle of the frame.
 Result<void> add_second_pose(const AccuracyScene& scene, const ClothPose& pose, int threads,
-                             std::vector<Patch>& patches) {
+                             std::vector<ClothPatch>& patches) {
   Scene tilted = scene.scene;
   tilted.pose = pose;
   tilted.seed += 1000;  // other noise
-  Result<Patch> other = render_patch(tilted, scene.patches.front(), threads);
+  Result<ClothPatch> other = render_patch(tilted, scene.patches.front(), threads);
   if (!other) return std::move(other).error();
   const auto number = [](pipeline::Photographs& photographs) {
     photographs.leds.resize(photographs.count());
@@ -240,7 +240,7 @@ Result<void> add_second_pose(const AccuracyScene& scene, const ClothPose& pose, 
   Result<pipeline::GlossSamples> samples =
       sample_gloss(other->photographs, *solver::robust_method(), nullptr, threads);
   if (!samples) return std::move(samples).error();
-  for (Patch& patch : patches) {
+  for (ClothPatch& patch : patches) {
     number(patch.photographs);
     patch.photographs.second_pose = *samples;
   }
@@ -248,7 +248,7 @@ Result<void> add_second_pose(const AccuracyScene& scene, const ClothPose& pose, 
 }
 
 // Microseconds a pixel of a method on one thread.
-Result<double> pixel_us(const Patch& patch, const solver::Method& method) {
+Result<double> pixel_us(const ClothPatch& patch, const solver::Method& method) {
   SolvedMaps maps(patch.size());
   Result<void> solved;
   const double seconds = least_seconds(3, [&] {
@@ -265,9 +265,9 @@ Json or_null(double value) {
 }
 
 Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int threads) {
-  Result<std::vector<Patch>> patches = render_patches(scene, threads);
+  Result<std::vector<ClothPatch>> patches = render_patches(scene, threads);
   if (!patches) return std::move(patches).error();
-  for (Patch& patch : *patches) {
+  for (ClothPatch& patch : *patches) {
     if (!cloth.is_calibrated_wrong) continue;
     if (Result<void> ok = put_off(patch); !ok) return std::move(ok).error();
   }

@@ -22,7 +22,7 @@ namespace weft::bench {
 namespace {
 
 // The bound of every pixel of a patch, degrees.
-Image<float> bounds_of(const Patch& patch, int threads) {
+Image<float> bounds_of(const ClothPatch& patch, int threads) {
   Image<float> bounds(patch.size());
   const CfaPattern cfa = patch.photographs.planes().cfa;
   parallel_for(static_cast<std::size_t>(bounds.height()), threads, [&](std::size_t row, int) {
@@ -66,7 +66,7 @@ class Slope {
 // Errors of one contender on one scene.
 class Errors {
  public:
-  void add(const Patch& patch, const Image<float>& bounds, const SolvedMaps& maps) {
+  void add(const ClothPatch& patch, const Image<float>& bounds, const SolvedMaps& maps) {
     const Rect part = patch.measured();
     const CfaPattern cfa = patch.photographs.planes().cfa;
     for (int y = part.y0; y < part.y1; ++y) {
@@ -113,7 +113,8 @@ constexpr double kLong_s = 0.5;  // a solve whose overhead does not count
 
 // Wall time of one solve, the least of five unless the first is long, but for what looking for a lobe takes,
 // which is the same for a patch and for a frame of megapixels.
-Result<double> seconds_of(const Contender& contender, const Patch& patch, int threads, SolvedMaps& maps) {
+Result<double> seconds_of(const Contender& contender, const ClothPatch& patch, int threads,
+                          SolvedMaps& maps) {
   double least = std::numeric_limits<double>::infinity();
   for (int run = 0; run < 5; ++run) {
     Result<void> solved;
@@ -127,14 +128,14 @@ Result<double> seconds_of(const Contender& contender, const Patch& patch, int th
 
 // What a solve of the patch pays by frame and by row, which is a third of its time and nothing in a frame of
 // megapixels: by how much half of its columns take more than half of its time.
-Result<double> overhead_of(const Contender& contender, const Patch& patch, int threads) {
+Result<double> overhead_of(const Contender& contender, const ClothPatch& patch, int threads) {
   SolvedMaps maps(patch.size());
   const Result<double> whole = seconds_of(contender, patch, threads, maps);
   if (!whole) return whole;
   const int columns = patch.size().width / 4 * 2;
   Result<pipeline::Photographs> part = cut(patch.photographs, {0, 0, columns, patch.size().height});
   if (!part) return std::move(part).error();
-  Patch left;
+  ClothPatch left;
   left.photographs = std::move(*part);
   SolvedMaps maps_of_left(left.size());
   const Result<double> half = seconds_of(contender, left, threads, maps_of_left);
@@ -143,7 +144,8 @@ Result<double> overhead_of(const Contender& contender, const Patch& patch, int t
   return std::max(0.0, (*half - share * *whole) / (1 - share));
 }
 
-Result<double> seconds_a_pixel(const Contender& contender, const Patch& patch, int threads, double seconds) {
+Result<double> seconds_a_pixel(const Contender& contender, const ClothPatch& patch, int threads,
+                               double seconds) {
   const auto pixels = static_cast<double>(patch.size().pixels());
   if (!contender.is_quality || seconds > kLong_s) return seconds / pixels;
   // Half a patch is too small for robust and what is built on it to choose blocks: they pay what standard
@@ -158,10 +160,10 @@ Result<double> seconds_a_pixel(const Contender& contender, const Patch& patch, i
 
 }  // namespace
 
-BoundedPatches with_bounds(std::vector<Patch> patches, int threads) {
+BoundedPatches with_bounds(std::vector<ClothPatch> patches, int threads) {
   BoundedPatches scene;
   scene.patches = std::move(patches);
-  for (const Patch& patch : scene.patches) scene.bounds.push_back(bounds_of(patch, threads));
+  for (const ClothPatch& patch : scene.patches) scene.bounds.push_back(bounds_of(patch, threads));
   return scene;
 }
 
@@ -170,7 +172,7 @@ Result<Json> score(const Contender& contender, const BoundedPatches& scene, int 
   double seconds = 0, lobe_seconds = 0, left_out = 0;
   const auto patches = static_cast<double>(scene.patches.size());
   for (std::size_t i = 0; i < scene.patches.size(); ++i) {
-    const Patch& patch = scene.patches[i];
+    const ClothPatch& patch = scene.patches[i];
     SolvedMaps maps(patch.size());
     const Result<double> took = seconds_of(contender, patch, threads, maps);
     if (!took) return took.error();
@@ -207,7 +209,7 @@ double number(const Json& row, const char* key) {
 namespace {
 
 Result<void> solve_patch(const solver::Method& method, const std::vector<View<const float>>& readings,
-                         const Patch& patch, int threads, SolvedMaps& maps) {
+                         const ClothPatch& patch, int threads, SolvedMaps& maps) {
   return solve_images(method, readings, patch.field(), patch.photographs.planes().cfa,
                       patch.photographs.noise(), threads, maps);
 }
@@ -246,7 +248,7 @@ JobContext on_threads(int threads) {
 }
 
 // Least squares on what each point truly faces and sees.
-Result<void> solve_oracle(const Patch& patch, int threads, SolvedMaps& maps) {
+Result<void> solve_oracle(const ClothPatch& patch, int threads, SolvedMaps& maps) {
   Image<float> seen(patch.size(), patch.readings.planes());
   for (int k = 0; k < seen.planes(); ++k) {
     for (int y = 0; y < seen.height(); ++y) {
@@ -278,7 +280,7 @@ void enlarge(const SolvedMaps& half, SolvedMaps& maps) {
 }
 
 // Each pixel of a preview stands for the four photosites that it was made of.
-Result<void> solve_at_half_size(const Patch& patch, const solver::MethodName& level, int threads,
+Result<void> solve_at_half_size(const ClothPatch& patch, const solver::MethodName& level, int threads,
                                 SolvedMaps& maps) {
   const Result<pipeline::Photographs> half = pipeline::half_size(patch.photographs, threads);
   if (!half) return half.error();
@@ -303,7 +305,7 @@ Result<pipeline::FrameFacts> solve_level(const pipeline::Photographs& photograph
 }
 
 SolvePatch as_product(std::shared_ptr<const solver::Method> method) {
-  return [method](const Patch& patch, int threads, SolvedMaps& maps) -> Result<void> {
+  return [method](const ClothPatch& patch, int threads, SolvedMaps& maps) -> Result<void> {
     if (!method->wants_rgb()) {
       return solve_patch(*method, planes_of(patch.readings), patch, threads, maps);
     }
@@ -316,7 +318,7 @@ SolvePatch as_product(std::shared_ptr<const solver::Method> method) {
 }
 
 SolvePatch by_level(const solver::MethodName& level) {
-  return [level](const Patch& patch, int threads, SolvedMaps& maps) {
+  return [level](const ClothPatch& patch, int threads, SolvedMaps& maps) {
     if (level.extent == solver::Extent::kHalfSize) return solve_at_half_size(patch, level, threads, maps);
     const Result<pipeline::FrameFacts> facts = solve_level(patch.photographs, level, threads, maps);
     return facts ? Result<void>() : facts.error();
@@ -324,7 +326,7 @@ SolvePatch by_level(const solver::MethodName& level) {
 }
 
 SolvePatch by_reference(const pipeline::ReferenceOptions& options) {
-  return [options](const Patch& patch, int threads, SolvedMaps& maps) -> Result<void> {
+  return [options](const ClothPatch& patch, int threads, SolvedMaps& maps) -> Result<void> {
     const auto solved = solve_reference(patch.photographs, pipeline::kSolveTile, options, on_threads(threads),
                                         keeper_of(patch.photographs.planes(), maps));
     return solved ? Result<void>() : solved.error();

@@ -19,7 +19,7 @@
 namespace weft::bench {
 
 /// A way from a patch's readings to its maps, on so many threads.
-using SolvePatch = std::function<Result<void>(const Patch& patch, int threads, SolvedMaps& maps)>;
+using SolvePatch = std::function<Result<void>(const ClothPatch& patch, int threads, SolvedMaps& maps)>;
 
 struct Contender {
   std::string name;
@@ -64,10 +64,10 @@ Error no_such(const char* what, const std::string& name, const std::vector<std::
 /// The patches of a scene with the Cramer-Rao bound of each pixel: rms degrees for the lights that the point
 /// faces and sees.
 struct BoundedPatches {
-  std::vector<Patch> patches;
+  std::vector<ClothPatch> patches;
   std::vector<Image<float>> bounds;
 };
-BoundedPatches with_bounds(std::vector<Patch> patches, int threads);
+BoundedPatches with_bounds(std::vector<ClothPatch> patches, int threads);
 
 /// Errors and time of one contender on the patches of one scene, as accuracy_table() describes them, without
 /// what compares it with others.

@@ -96,7 +96,7 @@ batch::Outcome outcome_of(const batch::Plan& plan, const batch::Job& job, int nu
   outcome.seconds = outcome.node_seconds = 5;
   outcome.sigma_deg = 0.6;
   outcome.left_out = 0.03 + 1e-6 * number;
-  batch::Change change;
+  batch::MapChange change;
   change.pixels = 16'000'000;
   change.mean_deg = 0.1 + 1e-5 * number;
   change.p95_deg = 2 * change.mean_deg;

@@ -396,7 +396,7 @@ std::optional<Outcome> sum(int seed) {
   constexpr Size kFrame = {16384, 6400};
   constexpr int kSide = 16;
   constexpr float kWhite = 1e6f, kNoise = 3e3f;  // a float has 24 bits: its own sum would end at 1.7e13
-  calibration::BlockGrid grid(kFrame, kSide);
+  calibration::SheetBlockGrid grid(kFrame, kSide);
   Image<float> band({kFrame.width, kSide});
   std::uint64_t state = static_cast<std::uint64_t>(seed);
   std::vector<std::array<int, 2>> places;

@@ -21,7 +21,7 @@
 namespace weft::bench {
 namespace {
 
-using capture::Finding;
+using capture::LightFinding;
 using capture::PatchLights;
 using capture::ScanEvidence;
 using test::Lighting;
@@ -50,12 +50,12 @@ Lighting plain(int led) {
 
 /// What a scan says of a story.
 struct Told {
-  Finding finding = Finding::kAgrees;
+  LightFinding finding = LightFinding::kAgrees;
   std::string sentence;
   bool warned = false;
   double least_level = std::numeric_limits<double>::infinity(), most_level = 0, misfit = 0;
 
-  bool is_refused() const { return finding != Finding::kAgrees; }
+  bool is_refused() const { return finding != LightFinding::kAgrees; }
 };
 
 /// A cloth of which sessions are told. Light adds up, and so do glances at it: each LED is photographed
@@ -117,7 +117,7 @@ class Stage {
       const Story story = is_wrong ? with_light : plain;
       std::vector<double> light = seen(story(told_as(shot)), is_repeat);
       const capture::ShotVerdict verdict = evidence.judge(shot, light);
-      if (verdict.finding != Finding::kAgrees) {
+      if (verdict.finding != LightFinding::kAgrees) {
         is_mended = true;
         for (const auto& accused : plan) {
           if (accused.index == 0 ||
@@ -137,7 +137,7 @@ class Stage {
   }
 
  private:
-  static int told_as(const capture::PlannedShot& shot) {
+  static int told_as(const capture::DueShot& shot) {
     if (shot.role != ShotRole::kRepeat) return shot.led;
     return shot.led == 0 ? kDarkAgain : kRepeat;
   }
@@ -232,7 +232,8 @@ Json row_of(const std::string& scene, const Stage& stage) {
     return stage.tell([=](int led) { return plain(led == a ? a % n + 1 : led); }).is_refused();
   };
   const auto dead = [&](int a) {
-    return stage.tell([=](int led) { return led == a ? Lighting() : plain(led); }).finding == Finding::kDark;
+    return stage.tell([=](int led) { return led == a ? Lighting() : plain(led); }).finding ==
+           LightFinding::kDark;
   };
   const auto dim = [&](int a) {
     const Told told = stage.tell([=](int led) {

@@ -75,7 +75,7 @@ Result<void> run(Measured& m, int threads) {
   Result<void> ran;
   m.seconds = least_seconds(1, [&] {
     ran = runner.run(
-        frame, leds, {}, [](const Tile&) {}, [](const Tile&) {});
+        frame, leds, {}, [](const PassTile&) {}, [](const PassTile&) {});
   });
   const double samples = static_cast<double>(frame.pixels()) * static_cast<double>(leds.size());
   m.ns_per_pixel = std::min(m.ns_per_pixel, m.seconds * 1e9 / samples);
@@ -144,8 +144,8 @@ Result<Frames> frames_without_noise(Scene scene, int threads) {
   Result<void> ran;
   frames.seconds = least_seconds(1, [&] {
     ran = runner.run(
-        {0, 0, size.width, size.height}, leds, {}, [](const Tile&) {},
-        [&](const Tile& tile) {
+        {0, 0, size.width, size.height}, leds, {}, [](const PassTile&) {},
+        [&](const PassTile& tile) {
           for_each_pixel(tile.rect, [&](std::size_t, int x, int y) {
             frames.samples(x, y, tile.led) =
                 std::clamp(tile.samples[index_in(tile.sample_rect, x, y)], 0.0, 1.0);
@@ -181,7 +181,7 @@ Difference difference(const Image<double>& tested, const Image<double>& truth, c
 Result<Json> row_of(const NamedScene& named, int threads) {
   Scene choosing = named.scene;
   choosing.auto_to_sigma = kToSigma;
-  const Result<Plan> plan = plan_of(choosing);
+  const Result<SimulationPlan> plan = plan_of(choosing);
   if (!plan) return plan.error();
   Scene everything = named.scene;
   everything.effects = all_effects();
@@ -193,7 +193,7 @@ Result<Json> row_of(const NamedScene& named, int threads) {
   if (!all) return all.error();
 
   std::string left_out;
-  for (const LeftOut& effect : plan->left_out) left_out += (left_out.empty() ? "" : " ") + effect.name;
+  for (const LeftOutEffect& effect : plan->left_out) left_out += (left_out.empty() ? "" : " ") + effect.name;
   const Difference off = difference(chosen->samples, all->samples, plan->rig.sensor);
   const double frames = static_cast<double>(plan->rig.camera.size.pixels()) * chosen->samples.planes();
   return Json{{"effect", "auto"},

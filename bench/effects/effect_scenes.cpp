@@ -87,7 +87,7 @@ std::vector<NamedScene> auto_gallery(Size size) {
                          deep = family_settings(Family::kDeep);
   Scene satin = matte({}, 0.5);
   satin.geometry.kind = GeometryKind::kSatin;
-  const Preset sheen = *preset("satin");
+  const ClothPreset sheen = *preset("satin");
   satin.material.albedo = sheen.albedo;
   satin.material.reflectance = sheen.reflectance;
   Scene dim = matte(smooth, 0.02);

@@ -165,7 +165,7 @@ Example translucency() {
 
 Scene satin_scene() {
   Scene scene = close_weave(Family::kPlain);
-  const Preset satin = *preset("satin");
+  const ClothPreset satin = *preset("satin");
   scene.geometry = {};
   scene.geometry.kind = GeometryKind::kSatin;
   scene.geometry.twist_relief = 0.01;
@@ -346,8 +346,8 @@ Result<Shown> frame_of(const Scene& scene, int led, int threads) {
   Result<void> ran;
   shown.seconds = least_seconds(1, [&] {
     ran = runner.run(
-        {0, 0, size.width, size.height}, {&led, 1}, {}, [](const Tile&) {},
-        [&](const Tile& tile) {
+        {0, 0, size.width, size.height}, {&led, 1}, {}, [](const PassTile&) {},
+        [&](const PassTile& tile) {
           for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) {
             const int c = kCfa.channel_at(x, y);
             const auto channel = static_cast<std::size_t>(c);

@@ -69,7 +69,7 @@ Result<SolvedCloth> solved_cloth(const std::filesystem::path& scene_file, Size m
   const Result<simulator::Scene> scene = simulator::read_scene(scene_file);
   if (!scene) return scene.error();
   const Rect area = middle_of({scene->camera.width, scene->camera.height}, most);
-  const Result<Patch> patch = render_patch(*scene, area, threads);
+  const Result<ClothPatch> patch = render_patch(*scene, area, threads);
   if (!patch) return patch.error();
   SolvedCloth cloth{Image<float>(patch->size(), 3), Image<float>(patch->size(), 3)};
   JobContext context;

@@ -175,7 +175,7 @@ Result<Json> row_of_truth(const ScannedCloth& cloth, const simulator::Scene& sce
               {"relief_px", whole},  {"rms_px", rms},     {"share", rms / whole}};
 }
 
-Result<Json> row_of_level(const ScannedCloth& cloth, const Contender& level, const Patch& patch,
+Result<Json> row_of_level(const ScannedCloth& cloth, const Contender& level, const ClothPatch& patch,
                           const Image<float>& truth, int threads) {
   SolvedMaps maps(patch.size());
   if (Result<void> ok = level.solve(patch, threads, maps); !ok) return std::move(ok).error();
@@ -204,7 +204,7 @@ Result<Rows> maps_scans(const StudyOptions& options) {
     if (!scene) return scene.error();
     if (Result<void> ok = add_row(rows, row_of_truth(cloth, *scene, size, options.threads)); !ok)
       return ok.error();
-    const Result<Patch> patch = render_patch(*scene, centre_of(scene->camera, size), options.threads);
+    const Result<ClothPatch> patch = render_patch(*scene, centre_of(scene->camera, size), options.threads);
     if (!patch) return patch.error();
     const Result<Image<float>> truth = flat_height(patch->normal, options.threads);
     if (!truth) return truth.error();

@@ -82,7 +82,7 @@ struct Judged {
 Result<Judged> judge(const fs::path& scene_file) {
   const Result<simulator::Scene> scene = simulator::read_scene(scene_file);
   if (!scene) return scene.error();
-  const Result<simulator::Plan> plan = simulator::plan_of(*scene);
+  const Result<simulator::SimulationPlan> plan = simulator::plan_of(*scene);
   if (!plan) return plan.error();
   const Rect frame = {0, 0, scene->camera.width, scene->camera.height};
   const Result<simulator::Rendering> rendering = simulator::render_readings(*scene, frame);

@@ -239,9 +239,9 @@ Path path_of(const Trial& trial, int x, const solver::PixelSolution& in_double) 
                     trial.residual(x, 0) == static_cast<float>(in_double.residual);
   if (!same) return kFloat32;
   switch (in_double.path) {
-    case solver::SolvedBy::kSvd:
+    case solver::EquationsSolvedBy::kSvd:
       return kSvd;
-    case solver::SolvedBy::kQr:
+    case solver::EquationsSolvedBy::kQr:
       return kQr;
     default:
       return kEquations;

@@ -157,7 +157,7 @@ Result<void> measure_search(const StudyOptions& options, Rows& rows) {
        {std::pair("search by word, ranked", by_word), {"search by barcode", by_barcode}, {"by id", by_id}}) {
     std::vector<double> times_ms;
     for (int i = 0; i < options.runs; ++i) {
-      Result<library::Page> page = library::Page();
+      Result<library::CataloguePage> page = library::CataloguePage();
       times_ms.push_back(milliseconds_of([&] { page = catalogue->find(query); }));
       if (!page) return page.error();
     }

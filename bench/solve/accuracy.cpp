@@ -416,7 +416,7 @@ simulator::Scene scene_of(const Swatch& cloth, bool moves) {
   e.near_light = e.relief = e.cast_shadows = e.interreflection = e.defocus = e.noise = true;
   e.movement = moves;
   if (cloth.preset != nullptr) {
-    const simulator::Preset preset = *simulator::preset(cloth.preset);
+    const simulator::ClothPreset preset = *simulator::preset(cloth.preset);
     scene.material.reflectance = preset.reflectance;
     scene.material.albedo = preset.albedo;
     e.reflectance = true;

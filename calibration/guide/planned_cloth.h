@@ -14,7 +14,7 @@ namespace weft::app {
 /// A cloth that lights are planned for.
 struct NamedCloth {
   std::string name;
-  solver::PlannedCloth cloth;
+  solver::ForeseenCloth cloth;
 };
 
 /// Cloths by name; plausible, not measured (docs/reflectance.md).

@@ -18,10 +18,10 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+using solver::ForeseenSigma;
 using solver::LedPlace;
 using solver::LightPlan;
 using solver::LightSet;
-using solver::PlannedSigma;
 using solver::TriedPlace;
 
 // From black to white of a raw file of 14 bits; the calibration says electrons a count.
@@ -98,7 +98,7 @@ std::vector<Vec3> frame_places(const KnownRig& rig) {
   return places;
 }
 
-Result<void> check_places(const solver::PlannedRig& rig, const std::string& where) {
+Result<void> check_places(const solver::ForeseenRig& rig, const std::string& where) {
   for (const Vec3 place : rig.places_mm) {
     if (!(length(place) < 1e5)) return no_places(where, "the camera does not look at the table");
   }
@@ -112,8 +112,8 @@ Result<void> check_places(const solver::PlannedRig& rig, const std::string& wher
   return {};
 }
 
-Result<solver::PlannedRig> planned_of(const KnownRig& rig) {
-  solver::PlannedRig planned;
+Result<solver::ForeseenRig> planned_of(const KnownRig& rig) {
+  solver::ForeseenRig planned;
   planned.leds = rig.lights.leds;
   planned.camera_mm = kPlanCamera_mm;
   planned.places_mm = frame_places(rig);
@@ -251,7 +251,7 @@ std::string plan_verdict(const RigPlan& plan) {
 
 std::vector<std::string> plan_notes(const RigPlan& plan) {
   std::vector<std::string> notes;
-  const PlannedSigma& today = plan.rows.front().sigma;
+  const ForeseenSigma& today = plan.rows.front().sigma;
   if (!today.is_observable && today.correlation < solver::kTailOnly)
     notes.push_back("to these LEDs a stronger lobe and a rougher one look alike");
   if (today.unsolved > 0.005)
@@ -270,7 +270,7 @@ std::vector<std::string> plan_notes(const RigPlan& plan) {
 Result<RigPlan> plan_rig(const RigPlanOptions& options, const JobContext& context) {
   const Result<KnownRig> rig = known_rig(options.rig);
   if (!rig) return rig.error();
-  Result<solver::PlannedRig> planned = planned_of(*rig);
+  Result<solver::ForeseenRig> planned = planned_of(*rig);
   if (!planned) return std::move(planned).error();
   const LightPlan plan(*planned, options.cloth.cloth);
   RigPlan result;
@@ -315,7 +315,7 @@ const char* strength_key(const solver::Lobe& lobe) {
   return lobe.family == solver::LobeFamily::kCloth ? "sheen" : "f0";
 }
 
-Json sigma_json(const PlannedSigma& sigma, const solver::Lobe& lobe) {
+Json sigma_json(const ForeseenSigma& sigma, const solver::Lobe& lobe) {
   Json json = {{"normal_deg", number_or_null(sigma.normal_deg)}};
   if (!lobe.shines()) return json;
   json["alpha"] = number_or_null(sigma.alpha);
@@ -352,7 +352,7 @@ Json row_json(const RigPlanRow& row, const RigPlan& plan) {
 }
 
 Json cloth_json(const NamedCloth& named) {
-  const solver::PlannedCloth& cloth = named.cloth;
+  const solver::ForeseenCloth& cloth = named.cloth;
   Json json = {{"name", named.name},
                {"family", name_of(cloth.lobe.family)},
                {"albedo", cloth.albedo},
@@ -392,7 +392,7 @@ Json json_of(const RigPlan& plan) {
 std::string picture_of(const RigPlan& plan) {
   const double today = plan.rows.front().sigma.normal_deg;
   const bool is_told = std::isfinite(today);
-  const auto shown = [&](const PlannedSigma& sigma) {
+  const auto shown = [&](const ForeseenSigma& sigma) {
     return is_told ? today - sigma.normal_deg : sigma.normal_deg;
   };
   report::Hemisphere drawing;

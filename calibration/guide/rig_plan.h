@@ -18,7 +18,7 @@ namespace weft::app {
 struct RigPlanOptions {
   std::filesystem::path rig;  ///< a rig file, or the folder of a calibration
   NamedCloth cloth;
-  solver::PlanAim aim = solver::PlanAim::kAll;
+  solver::LightAim aim = solver::LightAim::kAll;
   double seconds_a_shot = 4;
 };
 
@@ -26,9 +26,9 @@ struct RigPlanOptions {
 struct RigPlanRow {
   /// For programs: as-it-is, one-more, near-camera, polarisers, polarisers-near-camera, moved.
   std::string name;
-  std::string what;            ///< for people
-  solver::PlannedSigma sigma;  ///< of a solve, which takes the rig to be as it was calibrated
-  solver::PlannedSigma least;  ///< of the best estimate there is, which fits the rig's errors with the cloth
+  std::string what;             ///< for people
+  solver::ForeseenSigma sigma;  ///< of a solve, which takes the rig to be as it was calibrated
+  solver::ForeseenSigma least;  ///< of the best estimate there is, which fits the rig's errors with the cloth
   std::optional<solver::LedPlace> place = {};  ///< of the LED that is new or moved
   std::optional<std::size_t> moved = {};       ///< its number, from 1
   int extra_shots = 0;
@@ -38,7 +38,7 @@ struct RigPlanRow {
 
 struct RigPlan {
   std::string rig;
-  solver::PlannedRig planned;
+  solver::ForeseenRig planned;
   bool is_calibrated = false;  ///< how far its LEDs may be off is the calibration's own, not what is typical
   NamedCloth cloth;
   std::vector<RigPlanRow> rows;           ///< the first is as it is

@@ -6,7 +6,7 @@
 
 namespace weft::calibration {
 
-std::optional<PaperTerm> paper_term(const Sight& sight, const NearLight& led, const Paper& paper,
+std::optional<PaperTerm> paper_term(const LineOfSight& sight, const NearLight& led, const Paper& paper,
                                     const Pose& pose) {
   const std::optional<Vec3> point = point_on_sheet(sight, pose);
   if (!point) return {};

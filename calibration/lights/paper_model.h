@@ -39,7 +39,7 @@ struct PaperTerm {
 };
 
 /// Nothing where the sheet is not seen, or the LED does not light it from the front.
-std::optional<PaperTerm> paper_term(const Sight& sight, const NearLight& led, const Paper& paper,
+std::optional<PaperTerm> paper_term(const LineOfSight& sight, const NearLight& led, const Paper& paper,
                                     const Pose& rig_from_sheet);
 
 /// Frame coordinates in [-1, 1] that gains are functions of.

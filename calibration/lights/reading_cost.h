@@ -55,7 +55,7 @@ class ReadingCost : public ceres::CostFunction {
  private:
   void differentiate(const PaperTerm& term, const double* sheet, double** jacobians) const;
 
-  Sight sight_;
+  LineOfSight sight_;
   Paper paper_;
   Pose pose_;
   std::array<double, kOwnGains> quadratic_;

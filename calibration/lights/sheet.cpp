@@ -17,14 +17,14 @@ bool is_paper(const Sheet& sheet, double u_mm, double v_mm) {
 
 }  // namespace
 
-Sight sight_of(const CameraModel& camera, double x_px, double y_px) {
+LineOfSight sight_of(const CameraModel& camera, double x_px, double y_px) {
   const Pose rig_from_camera =
       inverse({camera.camera_from_rig_rotation, camera.camera_from_rig_translation_mm});
   const Vec3 centre = rig_from_camera.translation_mm;
   return {centre, point_on_plane(camera, x_px, y_px, 0) - centre};
 }
 
-std::optional<Vec3> point_on_sheet(const Sight& sight, const Pose& rig_from_sheet) {
+std::optional<Vec3> point_on_sheet(const LineOfSight& sight, const Pose& rig_from_sheet) {
   const Vec3 n = normal_of(rig_from_sheet);
   const double towards = dot(n, sight.direction);
   if (!(towards < 0)) return {};

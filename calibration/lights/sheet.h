@@ -40,14 +40,14 @@ inline Vec3 normal_of(const Pose& rig_from_sheet) {
 }
 
 /// A line of sight in the rig frame.
-struct Sight {
+struct LineOfSight {
   Vec3 origin_mm;
   Vec3 direction;  ///< of any length
 };
-Sight sight_of(const CameraModel& camera, double x_px, double y_px);
+LineOfSight sight_of(const CameraModel& camera, double x_px, double y_px);
 
 /// Where a line of sight meets the plane of a sheet; nothing where it passes it by or sees its back.
-std::optional<Vec3> point_on_sheet(const Sight& sight, const Pose& rig_from_sheet);
+std::optional<Vec3> point_on_sheet(const LineOfSight& sight, const Pose& rig_from_sheet);
 
 /// Whether the whole pixel square of `side_px` about (x_px, y_px) shows paper: inside the margin, beside what
 /// is printed.

@@ -96,12 +96,12 @@ struct Gathered {
 
 }  // namespace
 
-BlockGrid::BlockGrid(Size frame, int side_px)
+SheetBlockGrid::SheetBlockGrid(Size frame, int side_px)
     : block_px(side_px), columns(frame.width / side_px), rows(frame.height / side_px) {
   blocks.resize(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
 }
 
-void average_row(BlockGrid& grid, int row, View<const float> band, const CfaPattern& cfa) {
+void average_row(SheetBlockGrid& grid, int row, View<const float> band, const CfaPattern& cfa) {
   const int side = grid.block_px;
   const double middle = (side - 1) / 2.0;
   std::array<Gathered, 3> channels;
@@ -117,7 +117,7 @@ void average_row(BlockGrid& grid, int row, View<const float> band, const CfaPatt
   }
 }
 
-void average_row(BlockGrid& grid, int row, const std::array<View<const float>, 3>& band) {
+void average_row(SheetBlockGrid& grid, int row, const std::array<View<const float>, 3>& band) {
   const int side = grid.block_px;
   const double middle = (side - 1) / 2.0;
   Gathered gathered;
@@ -132,7 +132,7 @@ void average_row(BlockGrid& grid, int row, const std::array<View<const float>, 3
   }
 }
 
-MergedBlock merge(const BlockGrid& grid, std::span<const std::array<int, 2>> places) {
+MergedBlock merge(const SheetBlockGrid& grid, std::span<const std::array<int, 2>> places) {
   MergedBlock merged;
   std::array<std::vector<Site>, 3> sites;
   std::array<double, 3> variance = {};

@@ -21,14 +21,14 @@ struct BlockMean {
 };
 
 /// A frame of readings as averages of squares. Rows and columns that do not fill a square are left out.
-struct BlockGrid {
+struct SheetBlockGrid {
   int block_px = 16;
   int columns = 0;
   int rows = 0;
   std::vector<BlockMean> blocks;  ///< row by row, three channels each
 
-  BlockGrid() = default;
-  BlockGrid(Size frame, int side_px);
+  SheetBlockGrid() = default;
+  SheetBlockGrid(Size frame, int side_px);
   const BlockMean& at(int column, int row, int channel) const { return blocks[index(column, row, channel)]; }
   BlockMean& at(int column, int row, int channel) { return blocks[index(column, row, channel)]; }
   /// Pixel coordinate of the centre of the i-th column or row.
@@ -51,9 +51,9 @@ inline constexpr double kClipFrom_sigmas = 4;
 /// far off it are left out and the plane is fitted again: the reading is its value at the block's centre, so
 /// neither the place of a channel's photosites in the cell nor the slope of the light across the block shifts
 /// it or counts as noise. Sums are in double. Holds nothing but the blocks: readings come band by band.
-void average_row(BlockGrid& grid, int row, View<const float> band, const CfaPattern& cfa);
+void average_row(SheetBlockGrid& grid, int row, View<const float> band, const CfaPattern& cfa);
 /// The same of developed pictures, planes R, G, B.
-void average_row(BlockGrid& grid, int row, const std::array<View<const float>, 3>& band);
+void average_row(SheetBlockGrid& grid, int row, const std::array<View<const float>, 3>& band);
 
 /// Several blocks as one.
 struct MergedBlock {
@@ -66,6 +66,6 @@ struct MergedBlock {
 /// Columns x0 <= i < x1 and rows of `places` that hold of one grid; those with a NaN are left out. The
 /// standard error is what the blocks' own errors give, or what their scatter about a plane gives where that
 /// is more: texture coarser than a photosite.
-MergedBlock merge(const BlockGrid& grid, std::span<const std::array<int, 2>> places);
+MergedBlock merge(const SheetBlockGrid& grid, std::span<const std::array<int, 2>> places);
 
 }  // namespace weft::calibration

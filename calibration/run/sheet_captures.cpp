@@ -22,7 +22,7 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::BlockGrid;
+using calibration::SheetBlockGrid;
 
 constexpr double kDarkShare = 0.01;  // of the brightest LED's light: less is no light
 constexpr double kWarnFullShare = 0.01;
@@ -32,7 +32,7 @@ Error bad_capture(const fs::path& where, std::string what, std::string why, std:
   return {ErrorKind::kBadData, std::move(what), where.string(), std::move(why), std::move(remedy)};
 }
 
-std::size_t index_of(const BlockGrid& grid, int column, int row) {
+std::size_t index_of(const SheetBlockGrid& grid, int column, int row) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns) +
          static_cast<std::size_t>(column);
 }
@@ -98,8 +98,8 @@ class SessionReader {
 
  private:
   Result<void> look();
-  Result<Image<std::uint8_t>> read_mosaics(std::vector<BlockGrid>& leds);
-  Result<Image<std::uint8_t>> read_developed(std::vector<BlockGrid>& leds);
+  Result<Image<std::uint8_t>> read_mosaics(std::vector<SheetBlockGrid>& leds);
+  Result<Image<std::uint8_t>> read_developed(std::vector<SheetBlockGrid>& leds);
   Result<void> find_pose(const Image<std::uint8_t>& grey, SheetCapture& capture) const;
   void mark_paper(SheetCapture& capture) const;
   Result<void> check_light(const SheetCapture& capture, std::vector<Verdict>& warnings) const;
@@ -134,7 +134,7 @@ Result<void> SessionReader::look() {
   return {};
 }
 
-Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<BlockGrid>& leds) {
+Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<SheetBlockGrid>& leds) {
   std::optional<RawFrame> dark;
   if (const Shot* shot = session_.dark()) {
     Result<RawFrame> frame = read_raw_shot(session_, *shot, size());
@@ -152,7 +152,7 @@ Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<BlockGrid>& 
     std::optional<VeilOverFrame> veil;
     if (const auto& measured = options_.calibration.response->veil)
       veil.emplace(*measured, size(), frame->cfa, read);
-    BlockGrid grid(size(), block_px_);
+    SheetBlockGrid grid(size(), block_px_);
     Image<float> band({size().width, block_px_});
     for (int row = 0; row < grid.rows; ++row) {
       const Rect rows = {0, row * block_px_, size().width, (row + 1) * block_px_};
@@ -171,7 +171,7 @@ Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<BlockGrid>& 
   return sum.grey();
 }
 
-Result<Image<std::uint8_t>> SessionReader::read_developed(std::vector<BlockGrid>& leds) {
+Result<Image<std::uint8_t>> SessionReader::read_developed(std::vector<SheetBlockGrid>& leds) {
   Image<float> dark;
   if (const Shot* shot = session_.dark()) {
     Result<Image<float>> image = read_developed_shot(session_, *shot);
@@ -184,7 +184,7 @@ Result<Image<std::uint8_t>> SessionReader::read_developed(std::vector<BlockGrid>
     if (!image) return std::move(image).error();
     if (!dark.empty()) subtract(*image, dark);
     scale(*image, 1 / seconds(shot));
-    BlockGrid grid(size(), block_px_);
+    SheetBlockGrid grid(size(), block_px_);
     for (int row = 0; row < grid.rows; ++row) {
       const Rect band = {0, row * block_px_, size().width, (row + 1) * block_px_};
       average_row(grid, row,
@@ -224,7 +224,7 @@ Result<void> SessionReader::find_pose(const Image<std::uint8_t>& grey, SheetCapt
 }
 
 void SessionReader::mark_paper(SheetCapture& capture) const {
-  const BlockGrid grid(size(), block_px_);
+  const SheetBlockGrid grid(size(), block_px_);
   capture.is_paper.resize(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
   parallel_for(static_cast<std::size_t>(grid.rows), context_.threads, [&](std::size_t j, int) {
     const int row = static_cast<int>(j);
@@ -242,7 +242,7 @@ Result<void> SessionReader::check_light(const SheetCapture& capture, std::vector
   std::vector<double> full(capture.leds.size());
   double brightest = 0;
   for (std::size_t k = 0; k < capture.leds.size(); ++k) {
-    const BlockGrid& grid = capture.leds[k];
+    const SheetBlockGrid& grid = capture.leds[k];
     double sum = 0, count = 0, paper = 0;
     for (int row = 0; row < grid.rows; ++row) {
       for (int column = 0; column < grid.columns; ++column) {
@@ -341,7 +341,7 @@ Result<SheetCaptures> read_sheet_captures(const SheetCapturesOptions& options, c
   SheetCaptures all;
   const Size size = options.calibration.camera->size;
   all.block_px = size.width < 1000 ? 8 : 16;
-  const BlockGrid like(size, all.block_px);
+  const SheetBlockGrid like(size, all.block_px);
   all.columns = like.columns;
   all.rows = like.rows;
   std::optional<Session> first;
@@ -356,7 +356,7 @@ Result<SheetCaptures> read_sheet_captures(const SheetCapturesOptions& options, c
     if (!first) first = reader.session();
     const Result<double> scale = exposure_scale(reader.session(), *first, *options.calibration.response);
     if (!scale) return scale.error();
-    for (BlockGrid& grid : capture->leds) {
+    for (SheetBlockGrid& grid : capture->leds) {
       for (calibration::BlockMean& block : grid.blocks) {
         block.reading *= *scale;
         block.standard_error *= static_cast<float>(*scale);
@@ -398,7 +398,7 @@ std::vector<calibration::PaperReading> single_blocks(const SheetCaptures& captur
                            static_cast<std::size_t>(column);
         if (!capture.is_paper[block] || left_out[j][block]) continue;
         for (std::size_t k = 0; k < capture.leds.size(); ++k) {
-          const BlockGrid& grid = capture.leds[k];
+          const SheetBlockGrid& grid = capture.leds[k];
           if (grid.columns == 0) continue;
           calibration::PaperReading r = {j, k, grid.centre_px(column), grid.centre_px(row), {}, {}};
           bool whole = true;

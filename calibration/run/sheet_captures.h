@@ -21,11 +21,11 @@ namespace weft::app {
 
 /// One session: the sheet in one pose under every LED.
 struct SheetCapture {
-  std::string name;                          ///< of the session's folder
-  calibration::SheetPose pose;               ///< from its tags
-  std::vector<calibration::BlockGrid> leds;  ///< of each LED of the rig; no columns where it was not lit
-  std::vector<char> is_paper;                ///< by block of a grid: shows nothing but paper
-  std::vector<std::string> lit_sha256;       ///< of its lit frames, by LED
+  std::string name;                               ///< of the session's folder
+  calibration::SheetPose pose;                    ///< from its tags
+  std::vector<calibration::SheetBlockGrid> leds;  ///< of each LED of the rig; no columns where it was not lit
+  std::vector<char> is_paper;                     ///< by block of a grid: shows nothing but paper
+  std::vector<std::string> lit_sha256;            ///< of its lit frames, by LED
 };
 
 /// Sessions of one sheet in several poses, block by block.

@@ -15,15 +15,15 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::BlockGrid;
+using calibration::SheetBlockGrid;
 using calibration::SheetEvidence;
 using calibration::SheetSquare;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Averages of one photograph, a band of squares in memory at a time.
-BlockGrid blocks_of(const pipeline::Photographs& photographs, std::size_t k, int square_px) {
-  BlockGrid grid(photographs.size, square_px);
+SheetBlockGrid blocks_of(const pipeline::Photographs& photographs, std::size_t k, int square_px) {
+  SheetBlockGrid grid(photographs.size, square_px);
   const pipeline::Planes planes = photographs.planes();
   Image<float> scratch({photographs.size.width, square_px});
   for (int row = 0; row < grid.rows; ++row) {
@@ -58,7 +58,7 @@ Result<SheetEvidence> sheet_evidence(const Calibration& calibration, const pipel
   SheetEvidence evidence;
   evidence.rig_from_sheet = pose->rig_from_sheet;
   evidence.normal_sigma_deg = normal_sigma_deg(*pose);
-  const BlockGrid places(photographs.size, square_px);
+  const SheetBlockGrid places(photographs.size, square_px);
   evidence.columns = places.columns;
   evidence.rows = places.rows;
   const std::size_t leds = light_count(*calibration.lights);
@@ -76,7 +76,7 @@ Result<SheetEvidence> sheet_evidence(const Calibration& calibration, const pipel
                  "show a larger sheet, or take smaller squares"};
   }
   parallel_for(photographs.count(), context.threads, [&](std::size_t k, int) {
-    const BlockGrid grid = blocks_of(photographs, k, square_px);
+    const SheetBlockGrid grid = blocks_of(photographs, k, square_px);
     const auto led = static_cast<std::size_t>(photographs.leds[k] - 1);
     for (SheetSquare& square : evidence.squares) {
       for (int c = 0; c < 3; ++c)

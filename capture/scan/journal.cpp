@@ -84,7 +84,7 @@ Result<void> check_same_scan(const Session& session, const ScanRequest& request,
   if (!session.document.contains("plan") || session.document["plan"] != to_json(list)) {
     return cannot_resume(session, "its LEDs, repeat, brackets, polariser or light below are others");
   }
-  const std::vector<PlannedShot> plan = plan_shots(list, {}, {});
+  const std::vector<DueShot> plan = plan_shots(list, {}, {});
   for (const Shot& shot : session.shots) {
     const bool is_planned = shot.index >= 0 && shot.index < static_cast<int>(plan.size()) &&
                             plan[static_cast<std::size_t>(shot.index)].led == shot.led &&
@@ -123,7 +123,7 @@ Result<Descriptor> locked(const fs::path& folder) {
 
 /// The time of the session's other frames of this setting, else the one that the photograph says, else the
 /// one that was set: cameras name 1/60 s in several ways, and a session has one.
-double exposure_us_of(const PlannedShot& planned, const Photograph& photograph, const Session& session) {
+double exposure_us_of(const DueShot& planned, const Photograph& photograph, const Session& session) {
   const auto setting = [](ShotRole role) {
     return role == ShotRole::kBracket || role == ShotRole::kBelow ? role : ShotRole::kLit;
   };
@@ -261,7 +261,7 @@ Result<void> Journal::set_exposure(const Json& exposure) {
   return done;
 }
 
-Result<Shot> Journal::keep(const PlannedShot& planned, const Photograph& photograph, const Json& notes) {
+Result<Shot> Journal::keep(const DueShot& planned, const Photograph& photograph, const Json& notes) {
   const Result<std::string> digest = sha256_of_file(photograph.file);
   if (!digest) return digest.error();
   if (*digest != photograph.sha256) {

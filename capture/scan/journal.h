@@ -55,7 +55,7 @@ class Journal {
   /// Puts a photograph in its place, read-only, its digest verified (kTryAgain where it is another), and then
   /// into session.json, together with the word that the shot it supersedes is superseded. `notes` are further
   /// fields of the shot.
-  Result<Shot> keep(const PlannedShot& planned, const Photograph& photograph, const Json& notes);
+  Result<Shot> keep(const DueShot& planned, const Photograph& photograph, const Json& notes);
   /// Takes frames out again; their files go to raw/.dropped.
   Result<void> discard(const std::vector<int>& indices);
   /// The session as finish() will leave it; one that was finished before keeps its warnings.

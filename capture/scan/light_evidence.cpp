@@ -88,7 +88,7 @@ using Readings = std::vector<const std::vector<double>*>;  ///< by frame
 
 /// What may have happened in the place of the plan.
 struct Story {
-  Finding finding = Finding::kAgrees;
+  LightFinding finding = LightFinding::kAgrees;
   std::string sentence;
   FrameLights lights;
 };
@@ -124,13 +124,13 @@ void add_exchanges(const FrameLights& planned, int leds, std::vector<Story>& sto
     for (int led = 1; led <= leds; ++led) {
       if (led == planned[f].led) continue;
       stories.push_back(
-          {Finding::kOther,
+          {LightFinding::kOther,
            fmt::format("LED {} lights where LED {} should: are their wires swapped?", led, planned[f].led),
            planned});
       stories.back().lights[f].led = led;
     }
     for (std::size_t g = f + 1; g < planned.size(); ++g) {
-      stories.push_back({Finding::kOther,
+      stories.push_back({LightFinding::kOther,
                          fmt::format("LED {} lights where LED {} should and the other way round: are their "
                                      "wires swapped?",
                                      planned[g].led, planned[f].led),
@@ -143,7 +143,7 @@ void add_exchanges(const FrameLights& planned, int leds, std::vector<Story>& sto
 /// Light that comes on with any of the frames and stays, or goes out again with a later one: somebody may
 /// have mended it before the scan went on. `own_led` has it anyhow; 0: none has.
 void add_more_light(const FrameLights& planned, const std::vector<Vec3>& more, double times, int own_led,
-                    Finding finding, const std::string& sentence, std::vector<Story>& stories) {
+                    LightFinding finding, const std::string& sentence, std::vector<Story>& stories) {
   for (std::size_t from = 0; from < planned.size(); ++from) {
     if (planned[from].led == own_led) continue;
     Story story = {finding, sentence, planned};
@@ -161,11 +161,11 @@ std::vector<Story> stories_beside(const FrameLights& planned, const PatchLights&
   const int leds = static_cast<int>(model.leds.size());
   add_exchanges(planned, leds, stories);
   for (int led = 1; led <= leds; ++led) {
-    add_more_light(planned, light_of(led, model), 1, led, Finding::kStaysLit,
+    add_more_light(planned, light_of(led, model), 1, led, LightFinding::kStaysLit,
                    fmt::format("LED {} stays lit", led), stories);
   }
   for (const double times : {0.1, 0.3, 1.0, 3.0}) {
-    add_more_light(planned, model.room, times, 0, Finding::kRoomLight, "there is light beside the LEDs",
+    add_more_light(planned, model.room, times, 0, LightFinding::kRoomLight, "there is light beside the LEDs",
                    stories);
   }
   return stories;
@@ -189,26 +189,26 @@ std::optional<Story> believed_story(const FrameLights& planned, const Readings& 
 }
 
 bool comes_and_goes(const Story& story) {
-  return story.finding == Finding::kRoomLight || story.finding == Finding::kStaysLit;
+  return story.finding == LightFinding::kRoomLight || story.finding == LightFinding::kStaysLit;
 }
 
 }  // namespace
 
-const char* code_of(Finding finding) {
+const char* code_of(LightFinding finding) {
   switch (finding) {
-    case Finding::kAgrees:
+    case LightFinding::kAgrees:
       return "";
-    case Finding::kDark:
+    case LightFinding::kDark:
       return "dark";
-    case Finding::kDim:
+    case LightFinding::kDim:
       return "dim";
-    case Finding::kOther:
+    case LightFinding::kOther:
       return "swapped";
-    case Finding::kStaysLit:
+    case LightFinding::kStaysLit:
       return "stays_lit";
-    case Finding::kRoomLight:
+    case LightFinding::kRoomLight:
       return "room_light";
-    case Finding::kChanged:
+    case LightFinding::kChanged:
       return "changed";
   }
   return "";
@@ -221,7 +221,7 @@ std::vector<double> ScanEvidence::glance(const RawFrame& frame) const {
   return glance_at(frame, grid_, model_ ? model_->scale : GlanceScale());
 }
 
-void ScanEvidence::accept(const PlannedShot& shot, std::vector<double> light) {
+void ScanEvidence::accept(const DueShot& shot, std::vector<double> light) {
   if (shot.role == ShotRole::kDark)
     dark_ = std::move(light);
   else if (shot.role == ShotRole::kLit && shot.polariser == solved_)
@@ -247,7 +247,7 @@ std::vector<double> ScanEvidence::without_dark(const std::vector<double>& light)
   return left;
 }
 
-ShotVerdict ScanEvidence::judge(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge(const DueShot& shot, const std::vector<double>& light) const {
   switch (shot.role) {
     case ShotRole::kDark:
       return judge_dark(shot, light);
@@ -264,12 +264,12 @@ ShotVerdict ScanEvidence::judge(const PlannedShot& shot, const std::vector<doubl
   return judge_again(shot, light);
 }
 
-ShotVerdict ScanEvidence::judge_dark(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge_dark(const DueShot& shot, const std::vector<double>& light) const {
   const std::vector<double> readable = finite(light);
   const double bright = readable.empty() ? 1 : lower_quantile(readable, 0.9);
   if (bright > kDarkTo || !std::isfinite(light.front())) {
     return {
-        Finding::kRoomLight,
+        LightFinding::kRoomLight,
         fmt::format("the dark shot is lit ({:.2g} of full scale): there is a lamp on in the room, or a LED "
                     "stays lit",
                     bright),
@@ -280,7 +280,7 @@ ShotVerdict ScanEvidence::judge_dark(const PlannedShot& shot, const std::vector<
   }
   ShotVerdict verdict;
   if (bright > kDarkWarns) {
-    verdict.doubt = Finding::kRoomLight;
+    verdict.doubt = LightFinding::kRoomLight;
     verdict.warnings.push_back(
         fmt::format("the dark shot has {:.2g} of full scale: darken the room for cleaner maps", bright));
   }
@@ -302,7 +302,7 @@ ShotVerdict ScanEvidence::judge_dark_again(const std::vector<double>& light) con
   ShotVerdict verdict;
   if (std::abs(more) < std::max(kDarkNoise * noise, kDarkAlike)) return verdict;
   if (more > kDarkTo) {
-    verdict.finding = Finding::kRoomLight;
+    verdict.finding = LightFinding::kRoomLight;
     verdict.sentence = fmt::format(
         "the dark shot at the end is brighter than the first by {} percent of full scale: a lamp in the room "
         "or a LED came on during the scan",
@@ -310,7 +310,7 @@ ShotVerdict ScanEvidence::judge_dark_again(const std::vector<double>& light) con
     verdict.accuses_all = true;
     return verdict;
   }
-  verdict.doubt = Finding::kRoomLight;
+  verdict.doubt = LightFinding::kRoomLight;
   verdict.warnings.push_back(
       fmt::format("the dark shot at the end is {} than the first by {} percent of full scale: the room's "
                   "light changed or the sensor warmed in between; scan again with the room dark",
@@ -318,7 +318,7 @@ ShotVerdict ScanEvidence::judge_dark_again(const std::vector<double>& light) con
   return verdict;
 }
 
-double ScanEvidence::level_of(const PlannedShot& shot, const std::vector<double>& light) const {
+double ScanEvidence::level_of(const DueShot& shot, const std::vector<double>& light) const {
   const auto of_flat_cloth = [&](int led, std::size_t i) { return light_of(led, *model_)[i].z; };
   std::vector<const Seen*> frames;
   for (const auto& [index, seen] : lit_) {
@@ -357,7 +357,7 @@ bool ScanEvidence::is_one_too_full(const std::vector<Seen>& full, const std::vec
 }
 
 /// A frame that is full, this one or one before, which those that are not let expect far from full.
-ShotVerdict ScanEvidence::judge_full(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge_full(const DueShot& shot, const std::vector<double>& light) const {
   std::vector<Seen> full, others;
   for (const auto& [index, seen] : lit_)
     (is_readable(seen.light) ? others : full).push_back({seen.shot, without_dark(seen.light)});
@@ -365,23 +365,23 @@ ShotVerdict ScanEvidence::judge_full(const PlannedShot& shot, const std::vector<
   (is_full ? full : others).push_back({shot, without_dark(light)});
   ShotVerdict verdict;
   if (!is_one_too_full(full, others)) return verdict;
-  verdict.finding = Finding::kRoomLight;
+  verdict.finding = LightFinding::kRoomLight;
   verdict.sentence = "a photograph is full where the others are far from it: there is light beside the LEDs";
   verdict.accuses_all = true;
   verdict.is_over = !is_full;
   return verdict;
 }
 
-ShotVerdict ScanEvidence::judge_lit(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge_lit(const DueShot& shot, const std::vector<double>& light) const {
   const std::vector<double> own = without_dark(light);
-  const auto found = [&](Finding finding, std::string sentence) {
+  const auto found = [&](LightFinding finding, std::string sentence) {
     return ShotVerdict{finding, std::move(sentence), {shot.index}, {}, {}, {}};
   };
   if (is_dark(own)) {
-    return found(Finding::kDark, fmt::format("LED {} is dark", shot.led));
+    return found(LightFinding::kDark, fmt::format("LED {} is dark", shot.led));
   }
   if (!model_ || lit_.empty()) return {};
-  if (const ShotVerdict full = judge_full(shot, light); full.finding != Finding::kAgrees) return full;
+  if (const ShotVerdict full = judge_full(shot, light); full.finding != LightFinding::kAgrees) return full;
   if (!is_readable(light)) {
     ShotVerdict verdict;
     verdict.warnings.push_back(
@@ -391,11 +391,11 @@ ShotVerdict ScanEvidence::judge_lit(const PlannedShot& shot, const std::vector<d
     return verdict;
   }
   const double level = level_of(shot, own);
-  if (level < kDarkLevel) return found(Finding::kDark, fmt::format("LED {} is dark", shot.led));
+  if (level < kDarkLevel) return found(LightFinding::kDark, fmt::format("LED {} is dark", shot.led));
   ShotVerdict verdict = judge_pattern(shot, light);
   verdict.level = level;
-  if (verdict.finding == Finding::kAgrees && level < kDimWarns) {
-    verdict.doubt = Finding::kDim;
+  if (verdict.finding == LightFinding::kAgrees && level < kDimWarns) {
+    verdict.doubt = LightFinding::kDim;
     verdict.warnings.push_back(
         fmt::format("LED {} gives {:.0f} percent of the light that the others let expect: look at it before "
                     "the next scan",
@@ -404,7 +404,7 @@ ShotVerdict ScanEvidence::judge_lit(const PlannedShot& shot, const std::vector<d
   return verdict;
 }
 
-ShotVerdict ScanEvidence::judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge_pattern(const DueShot& shot, const std::vector<double>& light) const {
   std::vector<Seen> frames;
   for (const auto& [index, seen] : lit_) {
     if (index != shot.index && is_readable(seen.light))
@@ -433,8 +433,8 @@ ShotVerdict ScanEvidence::judge_pattern(const PlannedShot& shot, const std::vect
   }
   const auto dimmest = std::ranges::min_element(as_planned.gain);
   if (const double share = *dimmest / median(as_planned.gain); share < kDimLevel) {
-    const PlannedShot& dim = frames[static_cast<std::size_t>(dimmest - as_planned.gain.begin())].shot;
-    verdict.finding = Finding::kDim;
+    const DueShot& dim = frames[static_cast<std::size_t>(dimmest - as_planned.gain.begin())].shot;
+    verdict.finding = LightFinding::kDim;
     verdict.sentence =
         fmt::format("LED {} gives {:.0f} percent of the light it should", dim.led, 100 * share);
     verdict.accused = {dim.index};
@@ -447,12 +447,12 @@ ShotVerdict ScanEvidence::judge_pattern(const PlannedShot& shot, const std::vect
 /// frame of another LED this one is more uneven than over that of its own. Where it is the other way round,
 /// the frame that the other LED has in this state may show this one. A lamp that came on looks so as well,
 /// sooner over one LED than over another: no frame of this state is believed.
-ShotVerdict ScanEvidence::judge_other_state(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge_other_state(const DueShot& shot, const std::vector<double>& light) const {
   const std::vector<double> own = without_dark(light);
-  const auto refuse = [&](Finding finding, std::string sentence) {
+  const auto refuse = [&](LightFinding finding, std::string sentence) {
     return ShotVerdict{finding, std::move(sentence), {shot.index}, {}, {}, {}};
   };
-  if (is_dark(own)) return refuse(Finding::kDark, fmt::format("LED {} is dark", shot.led));
+  if (is_dark(own)) return refuse(LightFinding::kDark, fmt::format("LED {} is dark", shot.led));
   const Seen* first = of_led(shot.led);
   const std::optional<Ratio> ratio =
       first == nullptr ? std::nullopt : ratio_of(own, without_dark(first->light));
@@ -465,7 +465,7 @@ ShotVerdict ScanEvidence::judge_other_state(const PlannedShot& shot, const std::
     if (seen.shot.led == shot.led || !other || other->scatter >= least) continue;
     least = other->scatter;
     verdict = refuse(
-        Finding::kOther,
+        LightFinding::kOther,
         fmt::format("LED {} lights where LED {} should: are their wires swapped?", seen.shot.led, shot.led));
     for (const auto& [led, of_this_state] : other_) {
       if (led != shot.led) verdict.accused.push_back(of_this_state);
@@ -478,13 +478,13 @@ ShotVerdict ScanEvidence::judge_other_state(const PlannedShot& shot, const std::
 ShotVerdict ScanEvidence::judge_below(const std::vector<double>& light) const {
   ShotVerdict verdict;
   if (!is_dark(without_dark(light))) return verdict;
-  verdict.doubt = Finding::kDark;
+  verdict.doubt = LightFinding::kDark;
   verdict.warnings.emplace_back(
       "no light comes through the cloth from below: it is dense, or the light below is out");
   return verdict;
 }
 
-ShotVerdict ScanEvidence::judge_again(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge_again(const DueShot& shot, const std::vector<double>& light) const {
   const Seen* first = of_led(shot.led);
   if (first == nullptr) return {};
   const double times = shot.exposure.exposure_us / first->shot.exposure.exposure_us;
@@ -494,26 +494,27 @@ ShotVerdict ScanEvidence::judge_again(const PlannedShot& shot, const std::vector
   ShotVerdict verdict;
   verdict.level = ratio->median / times;
   const bool is_repeat = shot.role == ShotRole::kRepeat;
-  const auto refuse = [&](Finding finding, std::string sentence) {
+  const auto refuse = [&](LightFinding finding, std::string sentence) {
     verdict.finding = finding;
     verdict.sentence = std::move(sentence);
     verdict.accused = {shot.index};
-    verdict.accuses_all = is_repeat && finding == Finding::kChanged;
+    verdict.accuses_all = is_repeat && finding == LightFinding::kChanged;
   };
   const double off = std::abs(*verdict.level - 1);
   if (*verdict.level < kDarkLevel) {
-    refuse(Finding::kDark, fmt::format("LED {} is dark", shot.led));
+    refuse(LightFinding::kDark, fmt::format("LED {} is dark", shot.led));
   } else if (off > (is_repeat ? kRepeatLevel : kBracketLevel)) {
-    refuse(Finding::kChanged, fmt::format("{} is {:.2f} times as bright as its first photograph lets expect",
-                                          name_of(shot), *verdict.level));
+    refuse(LightFinding::kChanged,
+           fmt::format("{} is {:.2f} times as bright as its first photograph lets expect", name_of(shot),
+                       *verdict.level));
   } else if (is_repeat && ratio->scatter > kRepeatPattern) {
-    refuse(Finding::kChanged,
+    refuse(LightFinding::kChanged,
            fmt::format(
                "{} differs from its first photograph by {:.0f} percent from place to place: the cloth or "
                "the camera was moved, or another light is on",
                name_of(shot), 100 * ratio->scatter));
   } else if (is_repeat && off > kDriftWarns) {
-    verdict.doubt = Finding::kChanged;
+    verdict.doubt = LightFinding::kChanged;
     verdict.warnings.push_back(fmt::format(
         "LED {} gave {:.1f} percent {} light at the end than at first: LEDs drift while they warm "
         "up; let each be lit once before the next scan",

@@ -20,7 +20,7 @@ constexpr std::size_t kEnoughForPatterns = 5;
 // less than the planned order is what happened. docs/measured/reliability.md has how often it is wrong.
 
 /// What the light of a frame says of the LEDs.
-enum class Finding {
+enum class LightFinding {
   kAgrees,
   kDark,       ///< the LED did not light
   kDim,        ///< it gave far less light than it should
@@ -31,18 +31,18 @@ enum class Finding {
 };
 
 /// "dark", "dim", "swapped", "stays_lit", "room_light", "changed"; "" where it agrees.
-const char* code_of(Finding finding);
+const char* code_of(LightFinding finding);
 
 /// What a frame says against the plan and the frames before it.
 struct ShotVerdict {
-  Finding finding = Finding::kAgrees;
+  LightFinding finding = LightFinding::kAgrees;
   std::string sentence;      ///< names the LED
   std::vector<int> accused;  ///< indices of shots that are not what they should be, this one or before
   std::vector<std::string> warnings;  ///< of a frame that is kept
   /// A lit frame's brightness over what the frames before let expect; a repeat's over its first.
   std::optional<double> level;
-  std::optional<double> misfit;      ///< of LightFit, as planned
-  Finding doubt = Finding::kAgrees;  ///< what a frame that is kept is warned of
+  std::optional<double> misfit;                ///< of LightFit, as planned
+  LightFinding doubt = LightFinding::kAgrees;  ///< what a frame that is kept is warned of
   /// Every frame since the dark shot, of whatever role and the newest as well: light that may come and go is
   /// no better known than that.
   bool accuses_all = false;
@@ -50,7 +50,8 @@ struct ShotVerdict {
 
   /// Whether the same shots once more may come out right.
   bool may_pass() const {
-    return is_over || finding == Finding::kDark || finding == Finding::kDim || finding == Finding::kChanged;
+    return is_over || finding == LightFinding::kDark || finding == LightFinding::kDim ||
+           finding == LightFinding::kChanged;
   }
 };
 
@@ -72,29 +73,29 @@ class ScanEvidence {
 
   /// The light of a frame by patch, which judge() and accept() take.
   std::vector<double> glance(const RawFrame& frame) const;
-  ShotVerdict judge(const PlannedShot& shot, const std::vector<double>& light) const;
-  void accept(const PlannedShot& shot, std::vector<double> light);
+  ShotVerdict judge(const DueShot& shot, const std::vector<double>& light) const;
+  void accept(const DueShot& shot, std::vector<double> light);
   /// Takes a lit frame out again, so that its shot can be judged anew; nothing where it was not accepted.
   void forget(int index);
 
  private:
   struct Seen {
-    PlannedShot shot;
+    DueShot shot;
     std::vector<double> light;
   };
   const Seen* of_led(int led) const;
   std::vector<double> without_dark(const std::vector<double>& light) const;
   /// Whether a frame is full where the others let expect far less. Dark shots are taken off.
   bool is_one_too_full(const std::vector<Seen>& full, const std::vector<Seen>& others) const;
-  ShotVerdict judge_dark(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_dark(const DueShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_dark_again(const std::vector<double>& light) const;
-  ShotVerdict judge_lit(const PlannedShot& shot, const std::vector<double>& light) const;
-  ShotVerdict judge_other_state(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_lit(const DueShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_other_state(const DueShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_below(const std::vector<double>& light) const;
-  ShotVerdict judge_again(const PlannedShot& shot, const std::vector<double>& light) const;
-  double level_of(const PlannedShot& shot, const std::vector<double>& light) const;
-  ShotVerdict judge_full(const PlannedShot& shot, const std::vector<double>& light) const;
-  ShotVerdict judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_again(const DueShot& shot, const std::vector<double>& light) const;
+  double level_of(const DueShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_full(const DueShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_pattern(const DueShot& shot, const std::vector<double>& light) const;
 
   PatchGrid grid_;
   std::optional<PatchLights> model_;

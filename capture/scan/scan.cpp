@@ -325,9 +325,7 @@ class Scan {
     return request_.again ? plan_again() : Result<void>();
   }
 
-  const PlannedShot& planned(int index) const {
-    return *std::ranges::find(plan_, index, &PlannedShot::index);
-  }
+  const DueShot& planned(int index) const { return *std::ranges::find(plan_, index, &DueShot::index); }
 
   Result<void> plan_again() {
     std::optional<double> bracket_us;
@@ -345,13 +343,13 @@ class Scan {
                              "ratios of its own exposures only, and the session's is none of them"
                            : fmt::format("take it at one that was measured: {}", fmt::join(measured, ", "))};
     }
-    Result<PlannedShot> again = shot_again(journal_->session(), *request_.again, exposure_, bracket_us);
+    Result<DueShot> again = shot_again(journal_->session(), *request_.again, exposure_, bracket_us);
     if (!again) return again.error();
     plan_.push_back(*again);
     return {};
   }
 
-  std::vector<PlannedShot> shots_to_take() const {
+  std::vector<DueShot> shots_to_take() const {
     if (request_.again) return {plan_.back()};
     return missing_shots(plan_, journal_->session());
   }
@@ -385,13 +383,13 @@ class Scan {
 
   /// While a shot is taken, the frame before it is decoded, checked and kept on another thread.
   Result<void> photograph_missing() {
-    const std::vector<PlannedShot> missing = shots_to_take();
-    std::deque<PlannedShot> queue(missing.begin(), missing.end());
+    const std::vector<DueShot> missing = shots_to_take();
+    std::deque<DueShot> queue(missing.begin(), missing.end());
     std::future<Arrived> on_its_way;
     while (!queue.empty() || on_its_way.valid()) {
       std::optional<Photograph> photograph;
       std::optional<Error> fault;
-      PlannedShot shot;
+      DueShot shot;
       if (!queue.empty()) {
         shot = queue.front();
         queue.pop_front();
@@ -427,7 +425,7 @@ class Scan {
     return {};
   }
 
-  Result<void> take_again(const Kept& kept, std::deque<PlannedShot>& queue) {
+  Result<void> take_again(const Kept& kept, std::deque<DueShot>& queue) {
     if (kept.take_again.empty()) return *kept.error;
     report_.phase(ScanPhase::kRecovering, kept.error->message());
     // In the order of the plan: a repeat is held against its first frame.
@@ -446,7 +444,7 @@ class Scan {
     return check_room(request_, static_cast<int>(more), list_.count(), photograph.bytes);
   }
 
-  Kept checked_and_kept(const PlannedShot& shot, const Photograph& photograph, FramesSoFar& so_far) try {
+  Kept checked_and_kept(const DueShot& shot, const Photograph& photograph, FramesSoFar& so_far) try {
     const std::string where = fmt::format("{} ({})", name_of(shot), file_stem(shot));
     Result<RawFrame> frame = decode_raw(photograph.file);
     if (!frame) return unusable(shot, "damaged", frame.error(), {shot.index});
@@ -459,7 +457,7 @@ class Scan {
 
     std::vector<double> light = so_far.evidence->glance(*frame);
     const ShotVerdict verdict = so_far.evidence->judge(shot, light);
-    if (verdict.finding != Finding::kAgrees) return refused(shot, verdict, so_far);
+    if (verdict.finding != LightFinding::kAgrees) return refused(shot, verdict, so_far);
 
     KeptFrame kept = {
         {}, histogram_rgb(*frame), verdict.warnings, {code_of(verdict.doubt), verdict.level, verdict.misfit}};
@@ -483,12 +481,12 @@ class Scan {
             {}};
   }
 
-  Kept unusable(const PlannedShot& shot, const char* code, const Error& error, std::vector<int> take_again) {
+  Kept unusable(const DueShot& shot, const char* code, const Error& error, std::vector<int> take_again) {
     report_.refused({shot.index, shot.led, shot.role, shot.polariser, {code, {}, {}}, error.message()});
     return {error, std::move(take_again)};
   }
 
-  std::vector<int> accused_by(const ShotVerdict& verdict, const PlannedShot& shot) const {
+  std::vector<int> accused_by(const ShotVerdict& verdict, const DueShot& shot) const {
     if (!verdict.accuses_all) return verdict.accused;
     std::vector<int> all;
     for (const Shot& kept : journal_->session().shots) {
@@ -499,11 +497,11 @@ class Scan {
   }
 
   /// Takes what is accused out of the session, so that it is taken again, now or by the next scan.
-  Kept refused(const PlannedShot& shot, const ShotVerdict& verdict, FramesSoFar& so_far) {
+  Kept refused(const DueShot& shot, const ShotVerdict& verdict, FramesSoFar& so_far) {
     const std::vector<int> indices = accused_by(verdict, shot);
     Kept kept = {Error{ErrorKind::kBadData, verdict.sentence, names_of(indices),
                        "the photograph does not agree with the calibrated light",
-                       verdict.finding == Finding::kChanged
+                       verdict.finding == LightFinding::kChanged
                            ? "leave cloth, camera and light alone, then run the same command again"
                            : "mend the light, then run the same command again"},
                  {}};
@@ -512,7 +510,7 @@ class Scan {
     if (!out) return {out.error(), {}};
     for (const int index : indices) {
       so_far.evidence->forget(index);
-      const PlannedShot& accused = planned(index);
+      const DueShot& accused = planned(index);
       report_.refused({index,
                        accused.led,
                        accused.role,
@@ -536,7 +534,7 @@ class Scan {
     return names;
   }
 
-  static void note_exposure(const PlannedShot& shot, const RawFrame& frame, KeptFrame& kept, Json& notes) {
+  static void note_exposure(const DueShot& shot, const RawFrame& frame, KeptFrame& kept, Json& notes) {
     double clipped = 0;
     for (const RawHistogram& histogram : kept.histogram_rgb) clipped = std::max(clipped, histogram.clipped);
     if (clipped > kMostClipped && shot.role != ShotRole::kBracket) kept.finding.code = "clipped";
@@ -580,7 +578,7 @@ class Scan {
   double asked_us_ = 0, below_asked_us_ = 0;  ///< of the camera's own; 0: metered
   ExposureSettings exposure_;
   OtherTimes times_;
-  std::vector<PlannedShot> plan_;
+  std::vector<DueShot> plan_;
   int frames_resumed_ = 0, frames_wrong_ = 0;
   std::map<int, int> times_wrong_;
   std::vector<std::string> warnings_;

@@ -30,9 +30,9 @@ Json to_json(const ShotList& list) {
   return json;
 }
 
-std::vector<PlannedShot> plan_shots(const ShotList& list, const ExposureSettings& exposure,
-                                    const OtherTimes& times) {
-  std::vector<PlannedShot> plan;
+std::vector<DueShot> plan_shots(const ShotList& list, const ExposureSettings& exposure,
+                                const OtherTimes& times) {
+  std::vector<DueShot> plan;
   const Polariser solved = list.polariser.empty() ? Polariser::kNone : list.polariser.front();
   const auto add = [&](int led, ShotRole role, double exposure_us, std::optional<Polariser> other = {}) {
     plan.push_back({static_cast<int>(plan.size()),
@@ -55,9 +55,9 @@ std::vector<PlannedShot> plan_shots(const ShotList& list, const ExposureSettings
   return plan;
 }
 
-std::vector<PlannedShot> plan_of(const Session& session, const ExposureSettings& exposure,
-                                 const OtherTimes& times) {
-  std::vector<PlannedShot> plan;
+std::vector<DueShot> plan_of(const Session& session, const ExposureSettings& exposure,
+                             const OtherTimes& times) {
+  std::vector<DueShot> plan;
   for (const Shot& shot : session.shots) {
     const double time_us = shot.role == ShotRole::kBracket ? times.bracket_us
                            : shot.role == ShotRole::kBelow ? times.below_us
@@ -68,8 +68,8 @@ std::vector<PlannedShot> plan_of(const Session& session, const ExposureSettings&
   return plan;
 }
 
-Result<PlannedShot> shot_again(const Session& session, int index, const ExposureSettings& exposure,
-                               std::optional<double> bracket_us) {
+Result<DueShot> shot_again(const Session& session, int index, const ExposureSettings& exposure,
+                           std::optional<double> bracket_us) {
   const auto refuse = [&](std::string why, std::string remedy) {
     return Error{ErrorKind::kUsage, "the shot cannot be taken again",
                  fmt::format("{}: index {}", session.folder.string(), index), std::move(why),
@@ -87,7 +87,7 @@ Result<PlannedShot> shot_again(const Session& session, int index, const Exposure
   }
   int last = 0;
   for (const Shot& shot : session.shots) last = std::max(last, shot.index);
-  PlannedShot again = {last + 1, old->led, old->role, exposure, old->polariser};
+  DueShot again = {last + 1, old->led, old->role, exposure, old->polariser};
   if (bracket_us) {
     again.role = ShotRole::kBracket;
     again.exposure.exposure_us = *bracket_us;
@@ -97,16 +97,16 @@ Result<PlannedShot> shot_again(const Session& session, int index, const Exposure
   return again;
 }
 
-std::string file_stem(const PlannedShot& shot) {
+std::string file_stem(const DueShot& shot) {
   if (shot.role == ShotRole::kBelow) return fmt::format("{:02}_below", shot.index);
   const bool has_state = shot.polariser != Polariser::kNone;
   return fmt::format("{:02}_led{:02}{}{}", shot.index, shot.led, has_state ? "_" : "",
                      has_state ? weft::name_of(shot.polariser) : "");
 }
 
-std::vector<PlannedShot> missing_shots(const std::vector<PlannedShot>& plan, const Session& session) {
-  std::vector<PlannedShot> missing;
-  std::copy_if(plan.begin(), plan.end(), std::back_inserter(missing), [&](const PlannedShot& planned) {
+std::vector<DueShot> missing_shots(const std::vector<DueShot>& plan, const Session& session) {
+  std::vector<DueShot> missing;
+  std::copy_if(plan.begin(), plan.end(), std::back_inserter(missing), [&](const DueShot& planned) {
     return std::none_of(session.shots.begin(), session.shots.end(),
                         [&](const Shot& shot) { return shot.index == planned.index; });
   });
@@ -136,7 +136,7 @@ std::string nearest_time_words(double wanted_us, double settable_us) {
                      exposure_words(wanted_us));
 }
 
-std::string name_of(const PlannedShot& shot) {
+std::string name_of(const DueShot& shot) {
   switch (shot.role) {
     case ShotRole::kDark:
       return "the dark shot";

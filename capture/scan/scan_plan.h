@@ -13,7 +13,7 @@
 namespace weft::capture {
 
 /// One shot of a scan.
-struct PlannedShot {
+struct DueShot {
   int index = 0;  ///< order in the session, from 0
   int led = 0;    ///< from 1; 0: none
   ShotRole role = ShotRole::kLit;
@@ -44,22 +44,22 @@ struct OtherTimes {
 /// in the polariser's other states, the light below, the dark one again. The dark shot is the first, because
 /// whatever lights it (a lamp in the room, a LED that stays lit) lights all the others too; the last tells
 /// whether that changed.
-std::vector<PlannedShot> plan_shots(const ShotList& list, const ExposureSettings& exposure,
-                                    const OtherTimes& times);
+std::vector<DueShot> plan_shots(const ShotList& list, const ExposureSettings& exposure,
+                                const OtherTimes& times);
 
 /// What was planned for a session's shots, in their order.
-std::vector<PlannedShot> plan_of(const Session& session, const ExposureSettings& exposure,
-                                 const OtherTimes& times);
+std::vector<DueShot> plan_of(const Session& session, const ExposureSettings& exposure,
+                             const OtherTimes& times);
 /// The shot of this index once more: kUsage where it is none that can be. `bracket_us`: as a bracket of its
 /// LED.
-Result<PlannedShot> shot_again(const Session& session, int index, const ExposureSettings& exposure,
-                               std::optional<double> bracket_us);
+Result<DueShot> shot_again(const Session& session, int index, const ExposureSettings& exposure,
+                           std::optional<double> bracket_us);
 
 /// "03_led04", "14_led01_parallel", "24_below": its file without the ending.
-std::string file_stem(const PlannedShot& shot);
+std::string file_stem(const DueShot& shot);
 
 /// The shots that the session does not have.
-std::vector<PlannedShot> missing_shots(const std::vector<PlannedShot>& plan, const Session& session);
+std::vector<DueShot> missing_shots(const std::vector<DueShot>& plan, const Session& session);
 
 /// The time of `times_us` (rising) that is nearest to `wanted_us` by ratio; `wanted_us` where there is none.
 double nearest_time_us(const std::vector<double>& times_us, double wanted_us);
@@ -70,6 +70,6 @@ Result<double> settable_time_us(const std::vector<double>& times_us, double want
 std::string nearest_time_words(double wanted_us, double settable_us);
 
 /// "LED 3", "the dark shot".
-std::string name_of(const PlannedShot& shot);
+std::string name_of(const DueShot& shot);
 
 }  // namespace weft::capture

@@ -22,7 +22,7 @@ double factor_of(const BeforeAfter& pair, double floor) {
   return (pair.after + floor) / (pair.before + floor);
 }
 
-std::vector<Grown> grown(const Change& change) {
+std::vector<Grown> grown(const MapChange& change) {
   std::vector<Grown> all;
   if (change.unsolved.after > change.unsolved.before + kMoreUnsolved)
     all.push_back({factor_of(change.unsolved, kMoreUnsolved),
@@ -54,7 +54,7 @@ void describe(Fields& fields, WorstWindow& w) {
   fields.value({"mean_deg", "Mean turn of its normals, degrees", {}, kMustSay}, w.mean_deg);
 }
 
-void describe(Fields& fields, Change& c) {
+void describe(Fields& fields, MapChange& c) {
   fields.value({"pixels", "That have a normal in both", {}, kMustSay}, c.pixels);
   fields.value({"mean_deg", "Between old and new normals, degrees", {}, kMustSay}, c.mean_deg);
   fields.value({"median_deg", "The same", {}, kMustSay}, c.median_deg);
@@ -71,18 +71,18 @@ void describe(Fields& fields, Change& c) {
   fields.value({"status_changed", "Share of pixels whose status speaks otherwise"}, c.status_changed);
 }
 
-std::vector<std::string> regressions(const Change& change) {
+std::vector<std::string> regressions(const MapChange& change) {
   std::vector<std::string> said;
   for (Grown& each : grown(change)) said.push_back(std::move(each.said));
   return said;
 }
 
-double regression_weight(const Change& change) {
+double regression_weight(const MapChange& change) {
   const std::vector<Grown> all = grown(change);
   return all.empty() ? 0 : all.front().factor;
 }
 
-bool is_graver(const Change& a, const Change& b) {
+bool is_graver(const MapChange& a, const MapChange& b) {
   return std::tuple(regression_weight(a), a.p95_deg) > std::tuple(regression_weight(b), b.p95_deg);
 }
 

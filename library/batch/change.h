@@ -27,7 +27,7 @@ struct BeforeAfter {
   friend bool operator==(const BeforeAfter&, const BeforeAfter&) = default;
 };
 
-struct Change {
+struct MapChange {
   std::int64_t pixels = 0;                                        ///< that have a normal in both
   double mean_deg = 0, median_deg = 0, p95_deg = 0, max_deg = 0;  ///< angles between old and new normals
   double albedo_rel = 0, albedo_bias_rel = 0;  ///< means of |new - old| / old and of (new - old) / old
@@ -38,10 +38,10 @@ struct Change {
   WorstWindow worst = {};
 
   bool is_none() const { return max_deg == 0 && albedo_rel == 0; }
-  friend bool operator==(const Change&, const Change&) = default;
+  friend bool operator==(const MapChange&, const MapChange&) = default;
 };
 
-void describe(Fields& fields, Change& change);
+void describe(Fields& fields, MapChange& change);
 
 /// Sigma, or what left-out lights are off by, that grew by more than this share is worse.
 inline constexpr double kWorseBy = 0.1;
@@ -49,13 +49,13 @@ inline constexpr double kWorseBy = 0.1;
 inline constexpr double kMoreUnsolved = 0.001;
 
 /// In what the new solve is worse: "sigma 0.5 to 0.9 degrees", the gravest first; empty: in nothing.
-std::vector<std::string> regressions(const Change& change);
+std::vector<std::string> regressions(const MapChange& change);
 
 /// How bad the regressions are: the largest factor by which something grew, 0 where nothing is worse.
-double regression_weight(const Change& change);
+double regression_weight(const MapChange& change);
 
 /// Whether `a` is to be looked at before `b`: regressions first, the gravest first, then by the 95th
 /// percentile.
-bool is_graver(const Change& a, const Change& b);
+bool is_graver(const MapChange& a, const MapChange& b);
 
 }  // namespace weft::batch

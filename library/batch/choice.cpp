@@ -13,7 +13,7 @@ constexpr std::size_t kCurvePoints = 12;
 
 // Indices of the options that a session climbs: dearer and better, each step worth less a second than the one
 // before.
-std::vector<std::size_t> hull_of(const std::vector<Option>& options) {
+std::vector<std::size_t> hull_of(const std::vector<LevelOption>& options) {
   std::vector<std::size_t> order(options.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
@@ -40,7 +40,7 @@ struct Step {
 
 }  // namespace
 
-std::optional<std::size_t> cheapest_within(std::span<const Option> options, double to_deg) {
+std::optional<std::size_t> cheapest_within(std::span<const LevelOption> options, double to_deg) {
   std::optional<std::size_t> cheapest;
   for (std::size_t i = 0; i < options.size(); ++i) {
     if (options[i].degrees > to_deg) continue;
@@ -49,7 +49,7 @@ std::optional<std::size_t> cheapest_within(std::span<const Option> options, doub
   return cheapest;
 }
 
-Result<Spending> spend(std::span<const std::vector<Option>> sessions, double seconds) {
+Result<Spending> spend(std::span<const std::vector<LevelOption>> sessions, double seconds) {
   Spending spending;
   std::vector<std::vector<std::size_t>> hulls;
   std::vector<Step> steps;
@@ -61,7 +61,7 @@ Result<Spending> spend(std::span<const std::vector<Option>> sessions, double sec
     spent += sessions[s][hull.front()].seconds;
     degrees += sessions[s][hull.front()].degrees;
     for (std::size_t p = 1; p < hull.size(); ++p) {
-      const Option &from = sessions[s][hull[p - 1]], &to = sessions[s][hull[p]];
+      const LevelOption &from = sessions[s][hull[p - 1]], &to = sessions[s][hull[p]];
       const double more = to.seconds - from.seconds, less = from.degrees - to.degrees;
       steps.push_back({less / more, more, less, s, p});
     }

@@ -46,7 +46,7 @@ struct Outcome {
   std::optional<double> left_out = {};     ///< rms of how left-out lights are predicted, a share
   std::vector<std::string> warnings = {};  ///< by name
   std::vector<std::string> made = {};      ///< folders of maps and exports
-  std::optional<Change> change = {};       ///< from the solve before
+  std::optional<MapChange> change = {};    ///< from the solve before
   std::string no_change = {};              ///< why it could not be compared with the solve before
 
   double solved_share() const { return solved.value_or(1 - unsolved); }

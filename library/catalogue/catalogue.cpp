@@ -508,14 +508,14 @@ Result<Entry> Catalogue::entry(std::int64_t key) {
   return e;
 }
 
-Result<Page> Catalogue::find(const Query& query) {
+Result<CataloguePage> Catalogue::find(const Query& query) {
   if (query.limit < 1 || query.limit > kMostLimit) {
     return unusable("limit", fmt::format("{} sessions a page", query.limit),
                     fmt::format("ask for 1 to {}", kMostLimit));
   }
   const Result<std::vector<std::int64_t>> keys = keys_of(query);
   if (!keys) return keys.error();
-  Page page;
+  CataloguePage page;
   page.total = keys->size();
   std::size_t at = 0;
   if (query.after) {

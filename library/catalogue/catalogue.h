@@ -55,7 +55,7 @@ struct Query {
   std::optional<std::int64_t> after = {};  ///< the key that ended the page before
 };
 
-struct Page {
+struct CataloguePage {
   std::vector<Entry> entries;
   std::size_t total = 0;              ///< over all pages
   std::optional<std::int64_t> after;  ///< of the next page; none: this is the last
@@ -88,7 +88,7 @@ class Catalogue {
 
   /// Newest first; of words the best match first, among the first 20 000. kUsage where limit or words cannot
   /// be used, or the entry `after` is gone.
-  Result<Page> find(const Query& query);
+  Result<CataloguePage> find(const Query& query);
   /// The session of this name, folder or id: kNoInput where there is none, kUsage where there are
   /// several.
   Result<Entry> find_one(const std::string& name);

@@ -42,7 +42,7 @@ Result<Edits> Edits::open(const std::filesystem::path& file) {
   return Edits(file, std::move(done), std::move(undone));
 }
 
-Result<void> Edits::add(const Change& change, const std::string& by) {
+Result<void> Edits::add(const MetadataChange& change, const std::string& by) {
   done_.push_back({{"session", change.folder.string()},
                    {"before", change.before},
                    {"after", change.after},
@@ -53,15 +53,15 @@ Result<void> Edits::add(const Change& change, const std::string& by) {
   return write();
 }
 
-Result<Change> Edits::undo() {
+Result<MetadataChange> Edits::undo() {
   return move(done_, undone_, "before", "after");
 }
 
-Result<Change> Edits::redo() {
+Result<MetadataChange> Edits::redo() {
   return move(undone_, done_, "after", "before");
 }
 
-Result<Change> Edits::move(Json& from, Json& to, const char* set, const char* expected) {
+Result<MetadataChange> Edits::move(Json& from, Json& to, const char* set, const char* expected) {
   if (from.empty()) {
     return Error{ErrorKind::kUsage, "there is nothing to take back", file_.string(), "",
                  "the last twenty changes can be undone, and made again until another follows"};
@@ -69,7 +69,7 @@ Result<Change> Edits::move(Json& from, Json& to, const char* set, const char* ex
   Json edit = from.back();
   Provided provided;
   provided.values = edit[expected];
-  Result<Change> change = change_metadata(edit["session"].get<std::string>(), edit[set], provided);
+  Result<MetadataChange> change = change_metadata(edit["session"].get<std::string>(), edit[set], provided);
   if (!change) return change;
   from.erase(from.size() - 1);
   to.push_back(std::move(edit));

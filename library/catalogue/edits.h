@@ -21,18 +21,18 @@ class Edits {
   static Result<Edits> open(const std::filesystem::path& file);
 
   /// Remembers a change that was made; what had been undone can no longer be made again.
-  Result<void> add(const Change& change, const std::string& by);
+  Result<void> add(const MetadataChange& change, const std::string& by);
 
   /// Takes the last change back, or makes the one that was taken back last again, and says what that was.
   /// Errors: kUsage (there is none), those of change_metadata(): kTryAgain where the field was changed by
   /// somebody else.
-  Result<Change> undo();
-  Result<Change> redo();
+  Result<MetadataChange> undo();
+  Result<MetadataChange> redo();
 
  private:
   Edits(std::filesystem::path file, Json done, Json undone)
       : file_(std::move(file)), done_(std::move(done)), undone_(std::move(undone)) {}
-  Result<Change> move(Json& from, Json& to, const char* set, const char* expected);
+  Result<MetadataChange> move(Json& from, Json& to, const char* set, const char* expected);
   Result<void> write() const;
 
   std::filesystem::path file_;

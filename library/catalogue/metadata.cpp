@@ -247,8 +247,8 @@ Json json_of(const Metadata& m) {
           {"revision", m.revision}};
 }
 
-Result<Change> change_metadata(const std::filesystem::path& folder, const Json& fields,
-                               const Provided& provided) {
+Result<MetadataChange> change_metadata(const std::filesystem::path& folder, const Json& fields,
+                                       const Provided& provided) {
   if (Result<void> ok = check_fields(fields); !ok) return std::move(ok).error();
   const Result<Descriptor> lock = lock_session(folder);
   if (!lock) return lock.error();
@@ -276,7 +276,7 @@ Result<Change> change_metadata(const std::filesystem::path& folder, const Json& 
     if (holder_of(key).value(key, Json()) != value) return changed_meanwhile(key + " is another");
   }
 
-  Change change = {folder, Json::object(), Json::object(), revision};
+  MetadataChange change = {folder, Json::object(), Json::object(), revision};
   for (const auto& [key, value] : fields.items()) {
     Json& holder = holder_of(key);
     Json before = holder.value(key, Json());
@@ -299,7 +299,7 @@ Result<Change> change_metadata(const std::filesystem::path& folder, const Json& 
   return change;
 }
 
-std::string words_of(const Change& change) {
+std::string words_of(const MetadataChange& change) {
   std::string words;
   for (const auto& [key, value] : change.after.items()) {
     std::string said = value.is_string() ? value.get<std::string>() : value.is_null() ? "none" : value.dump();

@@ -47,7 +47,7 @@ Json json_of(const Metadata& metadata);
 
 /// A change that was made, and what undoes it: `before` and `after` hold the fields that differ, null where
 /// there was none.
-struct Change {
+struct MetadataChange {
   std::filesystem::path folder;  ///< of the session
   Json before, after;
   int revision = 0;  ///< after it
@@ -64,10 +64,10 @@ struct Provided {
 /// of newer versions too. `tags` is a whole list. Takes the lock that a scan holds. Errors: kUsage (a field
 /// that is none, or breaks a rule), kNoInput (also: no such solve or shot), kBadData, kTryAgain (a scan
 /// writes the session, or it is not as provided), kCannotCreate.
-Result<Change> change_metadata(const std::filesystem::path& session, const Json& fields,
-                               const Provided& provided = {});
+Result<MetadataChange> change_metadata(const std::filesystem::path& session, const Json& fields,
+                                       const Provided& provided = {});
 
 /// What a change did, in words: "tags of twill: red, wool".
-std::string words_of(const Change& change);
+std::string words_of(const MetadataChange& change);
 
 }  // namespace weft::library

@@ -66,8 +66,8 @@ std::uint64_t bytes_of(const fs::path& file) {
   return failed ? 0 : bytes;
 }
 
-Result<void> make_session(const PlannedSession& planned, const ImportPlan& plan, const JobContext& context,
-                          double from, double to) {
+Result<void> make_session(const ProposedSession& planned, const ImportProposal& plan,
+                          const JobContext& context, double from, double to) {
   capture::remove_abandoned(planned.session.folder);
   PartialFolder aside(planned.session.folder);
   std::uint64_t bytes = std::uint64_t{1} << 20;
@@ -95,7 +95,7 @@ Result<void> make_session(const PlannedSession& planned, const ImportPlan& plan,
   return aside.publish();
 }
 
-Result<void> make_photographs(const PlannedPhotographs& planned, const ImportPlan& plan) {
+Result<void> make_photographs(const ProposedPhotographs& planned, const ImportProposal& plan) {
   capture::remove_abandoned(planned.folder);
   PartialFolder aside(planned.folder);
   std::uint64_t bytes = std::uint64_t{1} << 20;
@@ -125,7 +125,7 @@ Result<void> make_photographs(const PlannedPhotographs& planned, const ImportPla
 
 }  // namespace
 
-Result<void> run_import(const ImportPlan& plan, const JobContext& context) {
+Result<void> run_import(const ImportProposal& plan, const JobContext& context) {
   if (plan.count(ImportState::kNew) == 0) return {};
   if (Result<void> ok = make_writable_folder(plan.archive); !ok) return ok;
   const double share = 1 / static_cast<double>(plan.sessions.size() + plan.photographs.size());
@@ -134,7 +134,7 @@ Result<void> run_import(const ImportPlan& plan, const JobContext& context) {
     const double from = static_cast<double>(s) * share;
     if (Result<void> ok = make_session(plan.sessions[s], plan, context, from, from + share); !ok) return ok;
   }
-  for (const PlannedPhotographs& planned : plan.photographs) {
+  for (const ProposedPhotographs& planned : plan.photographs) {
     if (planned.state != ImportState::kNew) continue;
     if (context.stop.stop_requested()) return interrupted();
     if (Result<void> ok = make_photographs(planned, plan); !ok) return ok;

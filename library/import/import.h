@@ -12,6 +12,6 @@ namespace weft::app {
 /// of the source are opened for reading alone. Refused and present ones are passed over. After an error,
 /// those before it are there, and the same import goes on. Reports the phase "import". Errors: kTryAgain (a
 /// photograph changed while it was copied), kCannotCreate, kInputOutput, kInterrupted.
-Result<void> run_import(const ImportPlan& plan, const JobContext& context);
+Result<void> run_import(const ImportProposal& plan, const JobContext& context);
 
 }  // namespace weft::app

@@ -95,8 +95,8 @@ class SessionPlanner {
       : options_(options), place_(place), calibration_(calibration), found_(found), context_(context) {}
 
   /// The error is that of the caller's stop token.
-  Result<PlannedSession> planned(SourceGroup group, bool is_numbered, double from, double to) {
-    PlannedSession plan;
+  Result<ProposedSession> planned(SourceGroup group, bool is_numbered, double from, double to) {
+    ProposedSession plan;
     plan.source = group.folder;
     plan.session.folder = place_.archive / (group.name + ".weft");
     plan.session.fabric = group.fabric.empty() ? group.name : group.fabric;
@@ -118,7 +118,7 @@ class SessionPlanner {
   bool has_used(const fs::path& file) const { return used_.contains(file); }
 
  private:
-  Result<void> fill(PlannedSession& plan, SourceGroup group, const std::vector<fs::path>& descriptions,
+  Result<void> fill(ProposedSession& plan, SourceGroup group, const std::vector<fs::path>& descriptions,
                     bool is_numbered, double from, double to) {
     plan.frames = in_order(std::move(group.frames), options_.order);
     if (!group.unreadable.empty()) return group.unreadable.front();
@@ -137,7 +137,7 @@ class SessionPlanner {
     return look_for_session(plan);
   }
 
-  static void put_shots(PlannedSession& plan, const CommonSetting& setting) {
+  static void put_shots(ProposedSession& plan, const CommonSetting& setting) {
     for (const SourceFrame& frame : plan.frames) {
       Shot shot;
       shot.index = static_cast<int>(plan.session.shots.size());
@@ -149,7 +149,7 @@ class SessionPlanner {
     }
   }
 
-  Result<void> decide(PlannedSession& plan, bool is_numbered, double from, double to) {
+  Result<void> decide(ProposedSession& plan, bool is_numbered, double from, double to) {
     const Result<capture::PatchLights> model =
         capture::PatchLights::make(calibration_, plan.session.cloth_height_mm);
     if (!model) return model.error();
@@ -173,7 +173,7 @@ class SessionPlanner {
     return {};
   }
 
-  static void put_leds(PlannedSession& plan) {
+  static void put_leds(ProposedSession& plan) {
     for (std::size_t f = 0; f < plan.frames.size(); ++f) {
       Shot& shot = plan.session.shots[f];
       shot.led = plan.decision.leds[f];
@@ -188,7 +188,7 @@ class SessionPlanner {
     }
   }
 
-  void put_document(PlannedSession& plan, const ImportDescription& said) const {
+  void put_document(ProposedSession& plan, const ImportDescription& said) const {
     Json& document = plan.session.document;
     document = Json::object();
     document["schema"] = "weft.session/1.5";
@@ -202,7 +202,7 @@ class SessionPlanner {
   }
 
   /// What lies where the session is to go.
-  Result<void> look_for_session(PlannedSession& plan) const {
+  Result<void> look_for_session(ProposedSession& plan) const {
     const fs::path& folder = plan.session.folder;
     const Result<bool> there = look_for(folder);
     if (!there) return there.error();
@@ -231,19 +231,19 @@ class SessionPlanner {
 };
 
 /// Hard links do not reach other disks: said before anything is made.
-Result<void> check_disks(const ImportPlan& plan) {
+Result<void> check_disks(const ImportProposal& plan) {
   if (plan.link != FrameLink::kHard) return {};
   const auto refuse = [&](const fs::path& file) {
     return Error{ErrorKind::kCannotCreate, "hard links do not reach another disk", file.string(),
                  fmt::format("{} is not on its disk", plan.archive.string()),
                  "take --link copy, or --link symbolic where the photographs will stay where they are"};
   };
-  for (const PlannedSession& session : plan.sessions) {
+  for (const ProposedSession& session : plan.sessions) {
     if (session.state != ImportState::kNew) continue;
     for (const SourceFrame& frame : session.frames)
       if (!are_on_one_disk(frame.source.file, plan.archive)) return refuse(frame.source.file);
   }
-  for (const PlannedPhotographs& photographs : plan.photographs) {
+  for (const ProposedPhotographs& photographs : plan.photographs) {
     if (photographs.state != ImportState::kNew) continue;
     std::vector<fs::path> files(photographs.photos.files.begin(), photographs.photos.files.end());
     if (!photographs.photos.mask.empty()) files.emplace_back(photographs.photos.mask);
@@ -254,10 +254,10 @@ Result<void> check_disks(const ImportPlan& plan) {
 }
 
 /// One session a target: whoever comes second is refused.
-void refuse_twins(ImportPlan& plan) {
+void refuse_twins(ImportProposal& plan) {
   for (std::size_t i = 0; i < plan.sessions.size(); ++i) {
     for (std::size_t j = i + 1; j < plan.sessions.size(); ++j) {
-      PlannedSession& second = plan.sessions[j];
+      ProposedSession& second = plan.sessions[j];
       if (second.refusal || second.session.folder != plan.sessions[i].session.folder) continue;
       second.state = ImportState::kRefused;
       second.refusal = Error{ErrorKind::kBadData, "two sessions would have one name", second.source.string(),
@@ -277,7 +277,7 @@ Result<GroupingOptions> grouping_by(const ImportOptions& options) {
 }
 
 Result<void> plan_sessions(const ImportOptions& options, const ImportPlace& place, GroupingOptions grouping,
-                           SourceFolders& found, const JobContext& context, ImportPlan& plan) {
+                           SourceFolders& found, const JobContext& context, ImportProposal& plan) {
   if (found.frames.empty()) return {};
   const Result<Calibration> calibration = calibration_for(place);
   if (!calibration) return calibration.error();
@@ -293,7 +293,7 @@ Result<void> plan_sessions(const ImportOptions& options, const ImportPlace& plac
     return static_cast<double>(g) / static_cast<double>(groups->size());
   };
   for (std::size_t g = 0; g < groups->size(); ++g) {
-    Result<PlannedSession> session =
+    Result<ProposedSession> session =
         planner.planned(std::move((*groups)[g]), is_numbered, share(g), share(g + 1));
     if (!session) return std::move(session).error();
     plan.sessions.push_back(std::move(*session));
@@ -304,7 +304,7 @@ Result<void> plan_sessions(const ImportOptions& options, const ImportPlace& plac
   return {};
 }
 
-Json json_of_frame(const PlannedSession& session, std::size_t f) {
+Json json_of_frame(const ProposedSession& session, std::size_t f) {
   const SourceFrame& frame = session.frames[f];
   const bool is_decided = f < session.decision.leds.size();
   const auto& sure = session.decision.sure;
@@ -319,27 +319,27 @@ Json json_of_frame(const PlannedSession& session, std::size_t f) {
 
 }  // namespace
 
-std::size_t ImportPlan::count(ImportState state) const {
-  return static_cast<std::size_t>(std::ranges::count(sessions, state, &PlannedSession::state) +
-                                  std::ranges::count(photographs, state, &PlannedPhotographs::state));
+std::size_t ImportProposal::count(ImportState state) const {
+  return static_cast<std::size_t>(std::ranges::count(sessions, state, &ProposedSession::state) +
+                                  std::ranges::count(photographs, state, &ProposedPhotographs::state));
 }
 
-std::optional<Error> ImportPlan::first_refusal() const {
-  for (const PlannedSession& session : sessions)
+std::optional<Error> ImportProposal::first_refusal() const {
+  for (const ProposedSession& session : sessions)
     if (session.refusal) return session.refusal;
-  for (const PlannedPhotographs& each : photographs)
+  for (const ProposedPhotographs& each : photographs)
     if (each.refusal) return each.refusal;
   return {};
 }
 
-Result<ImportPlan> plan_import(const ImportOptions& options, const JobContext& context) {
+Result<ImportProposal> plan_import(const ImportOptions& options, const JobContext& context) {
   const Result<ImportPlace> place = place_of(options);
   if (!place) return place.error();
   Result<GroupingOptions> grouping = grouping_by(options);
   if (!grouping) return std::move(grouping).error();
   Result<SourceFolders> found = look_into(options.folders);
   if (!found) return std::move(found).error();
-  ImportPlan plan;
+  ImportProposal plan;
   plan.archive = place->archive;
   plan.link = options.link;
   if (found->frames.empty() && found->light_files.empty() && found->photo_folders.empty()) {
@@ -356,11 +356,11 @@ Result<ImportPlan> plan_import(const ImportOptions& options, const JobContext& c
   return plan;
 }
 
-Json json_of(const ImportPlan& plan) {
+Json json_of(const ImportProposal& plan) {
   const auto state_of = [](ImportState state) { return kImportStateNames[static_cast<std::size_t>(state)]; };
   const auto error_of = [](const std::optional<Error>& error) { return error ? json_of(*error) : Json(); };
   Json sessions = Json::array(), photographs = Json::array(), left_over = Json::array();
-  for (const PlannedSession& session : plan.sessions) {
+  for (const ProposedSession& session : plan.sessions) {
     Json frames = Json::array();
     for (std::size_t f = 0; f < session.frames.size(); ++f) frames.push_back(json_of_frame(session, f));
     sessions.push_back({{"session", session.session.folder.string()},
@@ -373,7 +373,7 @@ Json json_of(const ImportPlan& plan) {
                         {"warnings", session.warnings},
                         {"error", error_of(session.refusal)}});
   }
-  for (const PlannedPhotographs& each : plan.photographs) {
+  for (const ProposedPhotographs& each : plan.photographs) {
     photographs.push_back({{"folder", each.folder.string()},
                            {"state", state_of(each.state)},
                            {"source", each.source.string()},

@@ -51,7 +51,7 @@ enum class ImportState {
 inline constexpr std::array<const char*, 3> kImportStateNames = {"new", "there", "refused"};
 
 /// One session. `frames`, and LEDs and the rest of `decision`, are in order of capture.
-struct PlannedSession {
+struct ProposedSession {
   ImportState state = ImportState::kNew;
   std::filesystem::path source;  ///< folder of its frames
   Session session;               ///< as it will be written, but for digests; its folder is where
@@ -62,7 +62,7 @@ struct PlannedSession {
 };
 
 /// Photographs under distant lights: a folder for `weft solve --photos`.
-struct PlannedPhotographs {
+struct ProposedPhotographs {
   ImportState state = ImportState::kNew;
   std::filesystem::path source;  ///< light file, or folder
   std::filesystem::path folder;  ///< that will be made
@@ -71,13 +71,13 @@ struct PlannedPhotographs {
 };
 
 /// All that will be done, and nothing done yet.
-struct ImportPlan {
+struct ImportProposal {
   std::filesystem::path archive;
   std::filesystem::path calibration;  ///< folder; empty where there are no sessions
   std::string calibration_id, rig;
   FrameLink link = FrameLink::kHard;
-  std::vector<PlannedSession> sessions;
-  std::vector<PlannedPhotographs> photographs;
+  std::vector<ProposedSession> sessions;
+  std::vector<ProposedPhotographs> photographs;
   std::vector<LeftOver> left_over;
 
   std::size_t count(ImportState state) const;
@@ -89,9 +89,9 @@ struct ImportPlan {
 /// what speaks against all is the error: kUsage (nothing names a calibration or an archive, the pattern),
 /// kNoInput (a folder that is not there, no photograph in any), kBadData (a calibration without lights, of
 /// another rig), kCannotCreate (hard links to another disk). Reports the phases "look" and "read".
-Result<ImportPlan> plan_import(const ImportOptions& options, const JobContext& context);
+Result<ImportProposal> plan_import(const ImportOptions& options, const JobContext& context);
 
 /// {"archive", "calibration", "rig", "sessions", "photographs", "left_over"}.
-Json json_of(const ImportPlan& plan);
+Json json_of(const ImportProposal& plan);
 
 }  // namespace weft::app

@@ -18,8 +18,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSchema = "weft.photographs";
 
-PlannedPhotographs planned_by(const PhotoOptions& options, const std::string& name, const fs::path& archive) {
-  PlannedPhotographs planned;
+ProposedPhotographs planned_by(const PhotoOptions& options, const std::string& name,
+                               const fs::path& archive) {
+  ProposedPhotographs planned;
   planned.source = options.light_file.empty() ? options.folder : options.light_file;
   planned.folder = archive / (file_name_of(name, "photographs") + ".photos");
   Result<PhotoPlan> photos = plan_photos(options);
@@ -32,7 +33,7 @@ PlannedPhotographs planned_by(const PhotoOptions& options, const std::string& na
   return planned;
 }
 
-void look_for_folder(PlannedPhotographs& planned) {
+void look_for_folder(ProposedPhotographs& planned) {
   if (planned.refusal || !is_there(planned.folder)) return;
   const Result<Json> stored = read_json(planned.folder / "photographs.json", kSchema, 1);
   if (stored && *stored == json_of(texts_of(planned).facts)) {
@@ -47,8 +48,8 @@ void look_for_folder(PlannedPhotographs& planned) {
 
 }  // namespace
 
-std::vector<PlannedPhotographs> plan_photographs(const SourceFolders& found, const fs::path& archive) {
-  std::vector<PlannedPhotographs> all;
+std::vector<ProposedPhotographs> plan_photographs(const SourceFolders& found, const fs::path& archive) {
+  std::vector<ProposedPhotographs> all;
   for (const fs::path& file : found.light_files) {
     const fs::path folder = file.parent_path();
     const bool is_alone = std::ranges::count(found.light_files, folder, &fs::path::parent_path) == 1;
@@ -64,7 +65,7 @@ std::vector<PlannedPhotographs> plan_photographs(const SourceFolders& found, con
     all.push_back(planned_by(options, folder.filename().string(), archive));
   }
   std::set<fs::path> taken;
-  for (PlannedPhotographs& planned : all) {
+  for (ProposedPhotographs& planned : all) {
     const std::string stem = planned.folder.stem().string();
     for (int i = 2; !taken.insert(planned.folder).second; ++i)
       planned.folder = archive / fmt::format("{}_{}.photos", stem, i);
@@ -88,7 +89,7 @@ std::vector<std::string> stored_names(const PhotoPlan& photos) {
   return names;
 }
 
-void describe(Fields& fields, PhotographFacts& f) {
+void describe(Fields& fields, ImportedPhotographs& f) {
   fields.value({"from", "The folder or light file that they were imported of", {}, kMustSay}, f.from);
   fields.list({"photographs", "In the order of their lights", {}, kMustSay}, f.photographs);
   fields.value({.name = "transfer",
@@ -99,13 +100,13 @@ void describe(Fields& fields, PhotographFacts& f) {
   fields.value({"mask", "SHA-256 of their mask, where there is one", {}, kUnlessEmpty}, f.mask);
 }
 
-Json json_of(const PhotographFacts& facts) {
+Json json_of(const ImportedPhotographs& facts) {
   Json json = {{"schema", fmt::format("{}/1", kSchema)}};
   write_fields(json, facts);
   return json;
 }
 
-PhotographTexts texts_of(const PlannedPhotographs& planned) {
+PhotographTexts texts_of(const ProposedPhotographs& planned) {
   const PhotoPlan& photos = planned.photos;
   const std::vector<std::string> names = stored_names(photos);
   PhotographTexts texts;

@@ -15,25 +15,25 @@ namespace weft::app {
 /// What would become of light files and folders in the layout of the DiLiGenT benchmark: NAME.photos in the
 /// archive, after the folder, of several light files in one also after the file. What cannot be solved as it
 /// is, is refused.
-std::vector<PlannedPhotographs> plan_photographs(const SourceFolders& found,
-                                                 const std::filesystem::path& archive);
+std::vector<ProposedPhotographs> plan_photographs(const SourceFolders& found,
+                                                  const std::filesystem::path& archive);
 
 /// What photographs.json says (weft.photographs/1).
-struct PhotographFacts {
+struct ImportedPhotographs {
   std::string from;  ///< the folder or light file that they were imported of
   std::vector<DistantPhotograph> photographs = {};
   std::string transfer = {}, mask = {};  ///< mask: its SHA-256; empty: there is none
 };
-void describe(Fields& fields, PhotographFacts& facts);
-Json json_of(const PhotographFacts& facts);
+void describe(Fields& fields, ImportedPhotographs& facts);
+Json json_of(const ImportedPhotographs& facts);
 
 /// The three text files of the layout, and what photographs.json says. Names of photographs are those of
 /// stored_names().
 struct PhotographTexts {
   std::string names, directions, intensities;
-  PhotographFacts facts;
+  ImportedPhotographs facts;
 };
-PhotographTexts texts_of(const PlannedPhotographs& planned);
+PhotographTexts texts_of(const ProposedPhotographs& planned);
 
 /// The names of the photographs in the folder that is made: their own, where each has another one.
 std::vector<std::string> stored_names(const PhotoPlan& photos);

@@ -66,7 +66,7 @@ Accepted accept_one(const batch::Row& row, const AcceptBatchOptions& options) {
   }
   accepted.is_moved = true;
   if (options.dry_run) return accepted;
-  const Result<library::Change> changed =
+  const Result<library::MetadataChange> changed =
       library::change_metadata(row.job->session, {{"current_solve", accepted.solve}});
   if (changed) return accepted;
   accepted.is_moved = false;

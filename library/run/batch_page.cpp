@@ -110,7 +110,7 @@ report::Section calibrations_section(const BatchState& state) {
 }
 
 std::vector<std::string> row_of_change(const Row& row) {
-  const batch::Change& change = *row.result->change;
+  const batch::MapChange& change = *row.result->change;
   const auto pair = [](const std::optional<batch::BeforeAfter>& p) {
     return p ? fmt::format("{:.3g} → {:.3g}", p->before, p->after) : std::string();
   };

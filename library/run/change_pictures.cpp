@@ -69,7 +69,7 @@ Image<float> angles_between(const Image<float>& before, const Image<float>& afte
 }  // namespace
 
 Result<std::string> draw_change(const fs::path& before, const fs::path& after, const batch::Job& job,
-                                const batch::Change& change) {
+                                const batch::MapChange& change) {
   const std::array<std::string, 3> xyz = {"X", "Y", "Z"}, rgb = {"R", "G", "B"};
   const Result<Image<float>> old = part_of(before / "normal.exr", xyz, change.worst);
   if (!old) return old.error();

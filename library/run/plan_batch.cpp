@@ -246,8 +246,8 @@ class Planning {
   std::size_t first_level() const { return is_fixed() || options_.product.then.empty() ? 0 : 1; }
 
   // From the first level on that may be chosen.
-  std::vector<batch::Option> options_of(std::size_t i) const {
-    std::vector<batch::Option> options;
+  std::vector<batch::LevelOption> options_of(std::size_t i) const {
+    std::vector<batch::LevelOption> options;
     for (std::size_t l = first_level(); l < forecasts_[i].size(); ++l) {
       const Forecast& forecast = forecasts_[i][l];
       options.push_back(
@@ -272,13 +272,13 @@ class Planning {
         take(i, 0);
         continue;
       }
-      const std::vector<batch::Option> options = options_of(i);
+      const std::vector<batch::LevelOption> options = options_of(i);
       const std::optional<std::size_t> level = batch::cheapest_within(options, *options_.to_deg);
       if (level) {
         take(i, first_level() + *level);
         continue;
       }
-      const auto closest = std::ranges::min_element(options, {}, &batch::Option::degrees);
+      const auto closest = std::ranges::min_element(options, {}, &batch::LevelOption::degrees);
       const auto closest_level = first_level() + static_cast<std::size_t>(closest - options.begin());
       const Forecast& forecast = forecasts_[i][closest_level];
       plan_.left_out.push_back({candidates_[i].input.folder.string(), batch::Reason::kNotGoodEnough, "",
@@ -290,7 +290,7 @@ class Planning {
   }
 
   Result<void> decide_by_hours() {
-    std::vector<std::vector<batch::Option>> options;
+    std::vector<std::vector<batch::LevelOption>> options;
     for (std::size_t i = 0; i < candidates_.size(); ++i) options.push_back(options_of(i));
     const Result<batch::Spending> spending = batch::spend(options, *options_.within_seconds);
     if (!spending) return spending.error();

@@ -109,7 +109,7 @@ void compare_with_before(const SessionWork& work, const JobContext& context, bat
     return;
   }
   Stopwatch watch;
-  const Result<batch::Change> change = compare_solves(folder, outcome.folder, context.threads);
+  const Result<batch::MapChange> change = compare_solves(folder, outcome.folder, context.threads);
   outcome.compare_s = watch.lap();
   if (change) {
     outcome.change = *change;

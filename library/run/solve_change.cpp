@@ -201,7 +201,7 @@ std::optional<double> sigma_median(const SolveFacts& facts) {
   return facts.sigma_normal_deg ? facts.sigma_normal_deg->median : std::nullopt;
 }
 
-Result<void> add_facts(const fs::path& before, const fs::path& after, batch::Change& change) {
+Result<void> add_facts(const fs::path& before, const fs::path& after, batch::MapChange& change) {
   const Result<SolveFacts> old = facts_in(before), now = facts_in(after);
   if (!old) return old.error();
   if (!now) return now.error();
@@ -257,7 +257,7 @@ Result<Image<float>> MapRows::read(Rect part) const {
   return planes;
 }
 
-Result<batch::Change> compare_solves(const fs::path& before, const fs::path& after, int threads) {
+Result<batch::MapChange> compare_solves(const fs::path& before, const fs::path& after, int threads) {
   const Result<Solves> solves = open_solves(before, after);
   if (!solves) return solves.error();
   const Size size = solves->size;
@@ -276,7 +276,7 @@ Result<batch::Change> compare_solves(const fs::path& before, const fs::path& aft
   });
   if (failure) return *failure;
 
-  batch::Change change;
+  batch::MapChange change;
   change.worst = worst_of(angles.plane());
   std::vector<float> all;
   all.reserve(static_cast<std::size_t>(size.pixels()));

@@ -29,8 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using enum material::Parameter;
-using material::Field;
 using material::Parameter;
+using material::ParameterField;
 
 // How a parameter is written where it is a map.
 struct WrittenMap {
@@ -57,7 +57,7 @@ MapSource source_named(const std::string& name) {
                                         : static_cast<MapSource>(found - kMapSourceNames.begin());
 }
 
-Image<float> filled_map(const Field& field, Size size) {
+Image<float> filled_map(const ParameterField& field, Size size) {
   if (field.is_map()) return std::move(material::copy_of(field).map);
   Image<float> map(size, field.planes);
   for (int p = 0; p < field.planes; ++p) {
@@ -112,7 +112,7 @@ class Composer {
     return ok;
   }
 
-  void note_parameter(Parameter parameter, const Field& field) {
+  void note_parameter(Parameter parameter, const ParameterField& field) {
     const material::ParameterFacts& facts = material::facts_of(parameter);
     const int count = material::numbers_of(facts.kind);
     Json value = count == 1 ? Json(field.constant[0]) : Json(field.constant);
@@ -120,7 +120,7 @@ class Composer {
   }
 
   Result<void> write_normal() {
-    Result<Field> slopes = stack_.composed(kNormal);
+    Result<ParameterField> slopes = stack_.composed(kNormal);
     if (!slopes) return std::move(slopes).error();
     has_relief_ = slopes->is_map();
     surface_.slope = filled_map(*slopes, node_.size);
@@ -132,7 +132,7 @@ class Composer {
 
   Result<void> write_plain() {
     for (const WrittenMap& map : plain_maps()) {
-      Result<Field> field = stack_.composed(map.parameter);
+      Result<ParameterField> field = stack_.composed(map.parameter);
       if (!field) return std::move(field).error();
       if (!field->is_map()) {
         note_parameter(map.parameter, *field);
@@ -156,7 +156,7 @@ class Composer {
   }
 
   Result<void> write_opacity() {
-    Result<Field> field = stack_.composed(kOpacity);
+    Result<ParameterField> field = stack_.composed(kOpacity);
     if (!field) return std::move(field).error();
     if (!field->is_map()) {
       note_parameter(kOpacity, *field);
@@ -173,11 +173,11 @@ class Composer {
 
   // A yarn's two widths stand in one file, which a set of maps has too.
   Result<void> write_lobe() {
-    Result<Field> roughness = stack_.composed(kRoughness);
+    Result<ParameterField> roughness = stack_.composed(kRoughness);
     if (!roughness) return std::move(roughness).error();
-    Result<Field> axis = stack_.composed(kAnisotropy);
+    Result<ParameterField> axis = stack_.composed(kAnisotropy);
     if (!axis) return std::move(axis).error();
-    Result<Field> specular = stack_.composed(kSpecular);
+    Result<ParameterField> specular = stack_.composed(kSpecular);
     if (!specular) return std::move(specular).error();
     const bool is_round = !axis->is_map() && axis->constant[0] == 0 && axis->constant[1] == 0;
     const std::string source = stack_.source(kRoughness);
@@ -201,13 +201,13 @@ class Composer {
     return write_specular(*specular);
   }
 
-  Image<float> lobe_of(const Field& roughness, const Field& axis) const {
+  Image<float> lobe_of(const ParameterField& roughness, const ParameterField& axis) const {
     Image<float> lobe(node_.size, 4);
     parallel_for(static_cast<std::size_t>(node_.size.height), context_.threads, [&](std::size_t row, int) {
       const int y = static_cast<int>(row);
       for (int x = 0; x < node_.size.width; ++x) {
         const double across = roughness.at(x, y) * roughness.at(x, y);
-        const material::Axis yarn = material::axis_from(axis.at(x, y, 0), axis.at(x, y, 1));
+        const material::YarnAxis yarn = material::axis_from(axis.at(x, y, 0), axis.at(x, y, 1));
         lobe(x, y, 0) = static_cast<float>(across);
         lobe(x, y, 1) = static_cast<float>(across * (1 - yarn.anisotropy));
         lobe(x, y, 2) = static_cast<float>(yarn.azimuth_deg);
@@ -229,7 +229,7 @@ class Composer {
     return file;
   }
 
-  Result<void> write_specular(Field& specular) {
+  Result<void> write_specular(ParameterField& specular) {
     material::multiply(specular, {material::kF0OfSpecular, 1, 1}, context_.threads);
     point_.f0 = material::means_of(specular)[0];
     MapFacts facts = {.name = "specular",
@@ -249,9 +249,9 @@ class Composer {
 
   // Fibres that stand up: their weight, and their colour where they have any weight.
   Result<void> write_fuzz() {
-    Result<Field> cloth = stack_.composed(kCloth);
+    Result<ParameterField> cloth = stack_.composed(kCloth);
     if (!cloth) return std::move(cloth).error();
-    Result<Field> sheen = stack_.composed(kSheen);
+    Result<ParameterField> sheen = stack_.composed(kSheen);
     if (!sheen) return std::move(sheen).error();
     point_.cloth = material::means_of(*cloth)[0];
     point_.sheen = material::means_of(*sheen);
@@ -275,7 +275,7 @@ class Composer {
   }
 
   Result<void> write_albedo() {
-    Result<Field> albedo = stack_.composed(kAlbedo);
+    Result<ParameterField> albedo = stack_.composed(kAlbedo);
     if (!albedo) return std::move(albedo).error();
     if (!albedo->is_map()) note_parameter(kAlbedo, *albedo);
     surface_.albedo = filled_map(*albedo, node_.size);
@@ -337,7 +337,7 @@ class Composer {
   }
 
   Result<void> write_weights() {
-    Result<Field> weights = stack_.weights();
+    Result<ParameterField> weights = stack_.weights();
     if (!weights) return std::move(weights).error();
     if (!weights->is_map()) return {};
     return write(
@@ -392,7 +392,7 @@ class Composer {
   material::Surface surface_;
   bool has_relief_ = false;
   double alpha_ = 0.49;
-  SurfacePoint point_;
+  ShadedPoint point_;
   std::vector<material::MipLevel> levels_;
   Json maps_ = Json::array(), parameters_ = Json::object();
   std::vector<Verdict> verdicts_;

@@ -17,9 +17,9 @@
 namespace weft::app {
 namespace {
 
-using material::Field;
 using material::Parameter;
 using material::ParameterFacts;
+using material::ParameterField;
 using material::ParameterKind;
 using Values = std::array<double, 3>;
 
@@ -130,15 +130,15 @@ bool convert(const Conversion& to, Values& v, std::size_t count) {
   return true;
 }
 
-Field same_field(Parameter parameter, const std::vector<double>& values) {
+ParameterField same_field(Parameter parameter, const std::vector<double>& values) {
   const ParameterFacts& facts = material::facts_of(parameter);
   Values v = {};
   std::copy_n(values.begin(), std::min(values.size(), v.size()), v.begin());
   if (facts.kind == ParameterKind::kNormal) {
     const auto slopes = material::slopes_of_normal(v[0], v[1], v[2]);
-    return Field::same({slopes[0], slopes[1], 0}, 2);
+    return ParameterField::same({slopes[0], slopes[1], 0}, 2);
   }
-  return Field::same(v, material::numbers_of(facts.kind));
+  return ParameterField::same(v, material::numbers_of(facts.kind));
 }
 
 std::string range_words(const Conversion& to) {
@@ -150,7 +150,7 @@ std::string range_words(const Conversion& to) {
 
 }  // namespace
 
-Result<Field> read_field(Parameter parameter, const MapFile& map, const std::string& where) {
+Result<ParameterField> read_field(Parameter parameter, const MapFile& map, const std::string& where) {
   if (map.same) return same_field(parameter, *map.same);
   const Result<LoadedImage> image = read_samples(map.file);
   if (!image) return image.error();
@@ -180,11 +180,11 @@ Result<Field> read_field(Parameter parameter, const MapFile& map, const std::str
       for (int p = 0; p < kept; ++p) field(x, y, p) = static_cast<float>(v[static_cast<std::size_t>(p)]);
     }
   }
-  return Field::of(std::move(field));
+  return ParameterField::of(std::move(field));
 }
 
-Result<Field> read_mask(const MapFile& map, std::size_t channel, const std::string& where) {
-  if (map.same) return Field::same(map.same->front());
+Result<ParameterField> read_mask(const MapFile& map, std::size_t channel, const std::string& where) {
+  if (map.same) return ParameterField::same(map.same->front());
   const Result<LoadedImage> image = read_samples(map.file);
   if (!image) return image.error();
   MapFile one = map;
@@ -210,7 +210,7 @@ Result<Field> read_mask(const MapFile& map, std::size_t channel, const std::stri
       field(x, y) = static_cast<float>(value);
     }
   }
-  return Field::of(std::move(field));
+  return ParameterField::of(std::move(field));
 }
 
 }  // namespace weft::app

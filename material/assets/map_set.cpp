@@ -432,13 +432,13 @@ Result<MapFile> find_mask(const Json& value, const std::string& where) {
   return value.contains("scan") ? map_of_scan({}, value, where) : map_of_file({}, value, where);
 }
 
-Result<material::Field> read_built(const MapSet& built, Parameter parameter) {
+Result<material::ParameterField> read_built(const MapSet& built, Parameter parameter) {
   const auto map =
       std::ranges::find_if(scan_maps(), [&](const ScanMap& each) { return each.parameter == parameter; });
   const MapFile file = file_in(built, *map);
   if (file.file.empty() && !file.same) {
     const material::ParameterFacts& facts = material::facts_of(parameter);
-    return material::Field::same(facts.otherwise, material::numbers_of(facts.kind));
+    return material::ParameterField::same(facts.otherwise, material::numbers_of(facts.kind));
   }
   return read_field(parameter, file, built.folder.string());
 }

@@ -70,13 +70,13 @@ Result<MapFile> find_mask(const Json& value, const std::string& where);
 /// normal unless a scale is said, and so do floats that show it (are_packed_normals()). kBadData with the
 /// first pixel that is no number or out of the parameter's range (an albedo from -1 to 4), and for channels
 /// that are not there.
-Result<material::Field> read_field(material::Parameter parameter, const MapFile& map,
-                                   const std::string& where);
+Result<material::ParameterField> read_field(material::Parameter parameter, const MapFile& map,
+                                            const std::string& where);
 /// One plane, scaled as it says; `channel` counts from 0 where the map names none.
-Result<material::Field> read_mask(const MapFile& map, std::size_t channel, const std::string& where);
+Result<material::ParameterField> read_mask(const MapFile& map, std::size_t channel, const std::string& where);
 
 /// A parameter of a built material, not of the kind kFactor. Errors as of read_field().
-Result<material::Field> read_built(const MapSet& built, material::Parameter parameter);
+Result<material::ParameterField> read_built(const MapSet& built, material::Parameter parameter);
 
 /// What a scan at the top of a file stands for: [surface] values of all maps that are measured or derived,
 /// and size_mm, where the file itself does not say them.

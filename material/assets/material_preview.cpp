@@ -13,7 +13,7 @@
 namespace weft::app {
 namespace {
 
-using material::Field;
+using material::ParameterField;
 
 struct Lamp {
   Vec3 to_light;
@@ -45,7 +45,7 @@ class Texture {
     mip_ = level == 0 ? nullptr : &maps.levels[static_cast<std::size_t>(level - 1)];
     size_ = material::size_of_level(maps.surface.size(), level);
     if (mip_ != nullptr) {
-      Field albedo = {3, {}, {}};
+      ParameterField albedo = {3, {}, {}};
       albedo.map = Image<float>(maps.surface.size(), 3);
       for (int p = 0; p < 3; ++p) {
         for (int y = 0; y < albedo.map.height(); ++y)
@@ -56,10 +56,10 @@ class Texture {
   }
 
   // The pixel under a place in mm, to the right and up.
-  SurfacePoint point(double u_mm, double v_mm, Vec3& normal) const {
+  ShadedPoint point(double u_mm, double v_mm, Vec3& normal) const {
     const std::array<int, 2> at = pixel(u_mm, v_mm);
     const int x = at[0], y = at[1];
-    SurfacePoint point = maps_.point;
+    ShadedPoint point = maps_.point;
     for (int c = 0; c < 3; ++c)
       point.albedo[static_cast<std::size_t>(c)] =
           mip_ ? small_.at(x, y, c) : double{maps_.surface.albedo(x, y, c)};
@@ -74,7 +74,7 @@ class Texture {
   }
 
  private:
-  static void set_lobe(SurfacePoint& point, const Image<float>& lobe, int x, int y) {
+  static void set_lobe(ShadedPoint& point, const Image<float>& lobe, int x, int y) {
     point.alpha = double{lobe(x, y, 0)};
     point.alpha_along = double{lobe(x, y, 1)};
     point.yarn_deg = double{lobe(x, y, 2)};
@@ -91,7 +91,7 @@ class Texture {
 
   const PreviewMaps& maps_;
   const material::MipLevel* mip_ = nullptr;
-  Field small_;
+  ParameterField small_;
   Size size_;
 };
 
@@ -101,7 +101,7 @@ Rgb seen(const Texture& texture, const std::vector<Lamp>& all, Vec3 out) {
   const Vec3 east = normalized({out.z, 0, -out.x}), north = cross(out, east);
   const double longitude = std::atan2(out.x, out.z), latitude = std::asin(std::clamp(out.y, -1.0, 1.0));
   Vec3 normal;
-  const SurfacePoint point =
+  const ShadedPoint point =
       texture.point(kPreviewRadius_mm * longitude, kPreviewRadius_mm * latitude, normal);
   const auto local = [&](Vec3 d) { return Vec3{dot(d, east), dot(d, north), dot(d, out)}; };
   const Vec3 view = local({0, 0, 1});

@@ -21,7 +21,7 @@ struct PreviewMaps {
   const material::Surface& surface;
   const std::vector<material::MipLevel>& levels;
   std::optional<std::array<double, 2>> size_mm;
-  SurfacePoint point;
+  ShadedPoint point;
 };
 
 /// A ball of the material under a lamp from the upper left, one behind it and a sky of twelve lights,

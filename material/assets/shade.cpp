@@ -27,7 +27,7 @@ double schlick(double f0, double cosine) {
 
 }  // namespace
 
-Rgb shaded(const SurfacePoint& point, Vec3 normal, Vec3 to_light, Vec3 to_view) {
+Rgb shaded(const ShadedPoint& point, Vec3 normal, Vec3 to_light, Vec3 to_view) {
   const double n_l = dot(normal, to_light);
   if (!(n_l > 0)) return {0, 0, 0};
   const solver::LitFrom from(to_light, to_view);

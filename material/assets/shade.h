@@ -7,7 +7,7 @@
 namespace weft::app {
 
 /// A material at one place, in the terms of its parameters.
-struct SurfacePoint {
+struct ShadedPoint {
   Rgb albedo = {0.5, 0.5, 0.5};
   double alpha = 0.49, alpha_along = 0.49;  ///< of GGX across and along the yarn
   double yarn_deg = 0;                      ///< azimuth of the yarn
@@ -23,6 +23,6 @@ struct SurfacePoint {
 /// and 23 over the same, both evaluated and blended by the weight `cloth` (seed 000, "Compositing"), which is
 /// exact where a blend of their parameters would not be. Directions are those of the frame in which `normal`
 /// is told and x is the azimuth 0.
-Rgb shaded(const SurfacePoint& point, Vec3 normal, Vec3 to_light, Vec3 to_view);
+Rgb shaded(const ShadedPoint& point, Vec3 normal, Vec3 to_light, Vec3 to_view);
 
 }  // namespace weft::app

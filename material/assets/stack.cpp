@@ -17,8 +17,8 @@ namespace {
 
 using enum material::Parameter;
 using material::BlendSpace;
-using material::Field;
 using material::Parameter;
+using material::ParameterField;
 using material::ParameterKind;
 
 constexpr double kMaskRadius_mm = 0.5;
@@ -34,18 +34,18 @@ std::array<double, 3> three(const Json& numbers, double otherwise) {
 }
 
 // A typed value as a field.
-Field typed_field(Parameter parameter, const std::array<double, 3>& v) {
+ParameterField typed_field(Parameter parameter, const std::array<double, 3>& v) {
   const material::ParameterFacts& facts = material::facts_of(parameter);
-  if (facts.kind != ParameterKind::kNormal) return Field::same(v, material::numbers_of(facts.kind));
+  if (facts.kind != ParameterKind::kNormal) return ParameterField::same(v, material::numbers_of(facts.kind));
   const auto slopes = material::slopes_of_normal(v[0], v[1], v[2]);
-  return Field::same({slopes[0], slopes[1], 0}, 2);
+  return ParameterField::same({slopes[0], slopes[1], 0}, 2);
 }
 
 // Anisotropies and azimuths as axes.
-Field axes_of(const Field& anisotropy, const Field& azimuth_deg, int threads) {
+ParameterField axes_of(const ParameterField& anisotropy, const ParameterField& azimuth_deg, int threads) {
   if (!anisotropy.is_map() && !azimuth_deg.is_map()) {
     const auto axis = material::axis_of(anisotropy.constant[0], azimuth_deg.constant[0]);
-    return Field::same({axis[0], axis[1], 0}, 2);
+    return ParameterField::same({axis[0], axis[1], 0}, 2);
   }
   const Size size = anisotropy.is_map() ? anisotropy.map.size() : azimuth_deg.map.size();
   Image<float> map(size, 2);
@@ -57,7 +57,7 @@ Field axes_of(const Field& anisotropy, const Field& azimuth_deg, int threads) {
       map(x, y, 1) = static_cast<float>(axis[1]);
     }
   });
-  return Field::of(std::move(map));
+  return ParameterField::of(std::move(map));
 }
 
 // A typed factor of a table, where it has one.
@@ -69,7 +69,7 @@ std::array<double, 3> factor_of(const KeptValues& values, Parameter factor) {
 }
 
 // Tint of an albedo and scale of slopes, of the same table.
-void apply_factors(const KeptValues& values, Parameter parameter, Field& field, int threads) {
+void apply_factors(const KeptValues& values, Parameter parameter, ParameterField& field, int threads) {
   if (parameter != kAlbedo && parameter != kNormal) return;
   const auto factor = factor_of(values, parameter == kAlbedo ? kAlbedoTint : kNormalScale);
   if (factor != std::array<double, 3>{1, 1, 1}) material::multiply(field, factor, threads);
@@ -79,17 +79,17 @@ BlendSpace space_of(Parameter parameter) {
   return material::facts_of(parameter).blend;
 }
 
-Result<Field> built_field(const MapSet& set, Parameter parameter, int threads) {
+Result<ParameterField> built_field(const MapSet& set, Parameter parameter, int threads) {
   if (parameter != kAnisotropy) return read_built(set, parameter);
-  const Result<Field> anisotropy = read_built(set, kAnisotropy);
+  const Result<ParameterField> anisotropy = read_built(set, kAnisotropy);
   if (!anisotropy) return anisotropy.error();
-  const Result<Field> azimuth = read_built(set, kAnisotropyDeg);
+  const Result<ParameterField> azimuth = read_built(set, kAnisotropyDeg);
   if (!azimuth) return azimuth.error();
   return axes_of(*anisotropy, *azimuth, threads);
 }
 
 // A mask of any size over the whole grid.
-Field stretched(const Field& mask, Size size, bool wraps, int threads) {
+ParameterField stretched(const ParameterField& mask, Size size, bool wraps, int threads) {
   if (!mask.is_map() || mask.map.size() == size) return material::copy_of(mask);
   return material::fitted(mask, BlendSpace::kLinear, {.wraps = wraps}, size, threads);
 }
@@ -127,8 +127,8 @@ Result<MaterialStack> MaterialStack::open(const MaterialNode& node, std::vector<
   return stack;
 }
 
-Result<Field> MaterialStack::table_value(const char* table, const KeptValues& values,
-                                         Parameter parameter) const {
+Result<ParameterField> MaterialStack::table_value(const char* table, const KeptValues& values,
+                                                  Parameter parameter) const {
   const material::ParameterFacts& facts = material::facts_of(parameter);
   const auto found = values.find(facts.name);
   if (found == values.end()) return typed_field(parameter, facts.otherwise);
@@ -138,12 +138,12 @@ Result<Field> MaterialStack::table_value(const char* table, const KeptValues& va
   return read_field(parameter, map->second, found->second.from + ": " + key);
 }
 
-Result<Field> MaterialStack::own(Parameter parameter) const {
+Result<ParameterField> MaterialStack::own(Parameter parameter) const {
   const KeptValues& values = node_->material.surface;
-  Result<Field> field = table_value("surface", values, parameter);
+  Result<ParameterField> field = table_value("surface", values, parameter);
   if (!field) return field;
   if (parameter == kAnisotropy) {
-    const Result<Field> azimuth = table_value("surface", values, kAnisotropyDeg);
+    const Result<ParameterField> azimuth = table_value("surface", values, kAnisotropyDeg);
     if (!azimuth) return azimuth.error();
     return axes_of(*field, *azimuth, threads_);
   }
@@ -171,7 +171,7 @@ bool MaterialStack::changes(std::size_t i, Parameter parameter) const {
   return parameter == kAlbedo || parameter == kNormal || parameter == kHeight;
 }
 
-Result<void> MaterialStack::lay_layer(std::size_t i, Parameter parameter, Field& below) const {
+Result<void> MaterialStack::lay_layer(std::size_t i, Parameter parameter, ParameterField& below) const {
   if (!changes(i, parameter)) return {};
   const KeptValues& values = node_->material.layers[i].values;
   const auto word = [&](const char* key, const char* otherwise) {
@@ -183,22 +183,22 @@ Result<void> MaterialStack::lay_layer(std::size_t i, Parameter parameter, Field&
       .normals = *material::normal_blend_named(word("normals", "add-slopes")),
       .alpha = values.contains("alpha") ? values.at("alpha").value.get<double>() : 1,
       .threads = threads_};
-  const Result<Field> read = built_field(layers_[i], parameter, threads_);
+  const Result<ParameterField> read = built_field(layers_[i], parameter, threads_);
   if (!read) return read.error();
-  Field layer = material::fitted(*read, space_of(parameter), *node_->fits[i], node_->size, threads_);
+  ParameterField layer = material::fitted(*read, space_of(parameter), *node_->fits[i], node_->size, threads_);
   if (parameter == kAlbedo && values.contains("tint"))
     material::multiply(layer, three(values.at("tint").value, 1), threads_);
   return material::lay(parameter, below, layer, masks_[i], options);
 }
 
-Result<void> MaterialStack::put_over(Parameter parameter, Field& field) const {
+Result<void> MaterialStack::put_over(Parameter parameter, ParameterField& field) const {
   const KeptValues& over = node_->material.over;
   const bool has_axis = parameter == kAnisotropy && has(over, kAnisotropyDeg);
   if (has(over, parameter) || has_axis) {
-    Result<Field> value = table_value("over", over, parameter);
+    Result<ParameterField> value = table_value("over", over, parameter);
     if (!value) return std::move(value).error();
     if (parameter == kAnisotropy) {
-      const Result<Field> azimuth = table_value("over", over, kAnisotropyDeg);
+      const Result<ParameterField> azimuth = table_value("over", over, kAnisotropyDeg);
       if (!azimuth) return azimuth.error();
       *value = axes_of(*value, *azimuth, threads_);
     }
@@ -208,21 +208,21 @@ Result<void> MaterialStack::put_over(Parameter parameter, Field& field) const {
   return {};
 }
 
-Result<Field> MaterialStack::mask_of(std::size_t i, const Field& height_mm) const {
+Result<ParameterField> MaterialStack::mask_of(std::size_t i, const ParameterField& height_mm) const {
   const MaterialLayer& layer = node_->material.layers[i];
   const auto found = layer.values.find("mask");
-  if (found == layer.values.end()) return Field::same(1);
+  if (found == layer.values.end()) return ParameterField::same(1);
   const Json& rule = found->second.value;
-  if (rule.contains("value")) return Field::same(rule["value"].get<double>());
+  if (rule.contains("value")) return ParameterField::same(rule["value"].get<double>());
   const std::string key = "layer." + layer.name + ".mask";
   material::MaskLevels levels;
-  Field mask;
+  ParameterField mask;
   if (rule.contains("map")) {
-    Result<Field> read = read_mask(node_->maps.at(key), 0, found->second.from + ": " + key);
+    Result<ParameterField> read = read_mask(node_->maps.at(key), 0, found->second.from + ": " + key);
     if (!read) return read;
     mask = stretched(*read, node_->size, node_->is_tile, threads_);
   } else if (rule["kind"] == "cavity") {
-    Result<Field> cavity =
+    Result<ParameterField> cavity =
         material::cavity_mask(height_mm, {.mm_per_pixel = node_->mm_per_pixel(),
                                           .radius_mm = rule.value("radius_mm", kMaskRadius_mm),
                                           .range_mm = rule.value("range_mm", 0.0),
@@ -246,10 +246,10 @@ Result<Field> MaterialStack::mask_of(std::size_t i, const Field& height_mm) cons
 }
 
 Result<void> MaterialStack::find_masks() {
-  Result<Field> height_mm = own(kHeight);
+  Result<ParameterField> height_mm = own(kHeight);
   if (!height_mm) return std::move(height_mm).error();
   for (std::size_t i = 0; i < layers_.size(); ++i) {
-    Result<Field> mask = mask_of(i, *height_mm);
+    Result<ParameterField> mask = mask_of(i, *height_mm);
     if (!mask) return std::move(mask).error();
     masks_.push_back(std::move(*mask));
     if (Result<void> ok = lay_layer(i, kHeight, *height_mm); !ok) return ok;
@@ -257,8 +257,8 @@ Result<void> MaterialStack::find_masks() {
   return {};
 }
 
-Result<Field> MaterialStack::composed(Parameter parameter) const {
-  Result<Field> field = own(parameter);
+Result<ParameterField> MaterialStack::composed(Parameter parameter) const {
+  Result<ParameterField> field = own(parameter);
   if (!field) return field;
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     if (Result<void> ok = lay_layer(i, parameter, *field); !ok) return std::move(ok).error();
@@ -283,23 +283,23 @@ std::string MaterialStack::source(Parameter parameter) const {
   return source;
 }
 
-Result<Field> MaterialStack::weights() const {
+Result<ParameterField> MaterialStack::weights() const {
   const auto map = node_->maps.find("runtime.weights");
-  if (map == node_->maps.end()) return Field{};
+  if (map == node_->maps.end()) return ParameterField{};
   Image<float> planes(node_->size, kMostRuntimeLayers);
   const std::string where = node_->material.runtime.at("weights").from + ": runtime.weights";
   const std::size_t count = node_->runtime.size();
   for (std::size_t p = 0; p < count; ++p) {
-    Result<Field> plane = read_mask(map->second, p, where);
+    Result<ParameterField> plane = read_mask(map->second, p, where);
     if (!plane) return plane;
-    Field fit = stretched(*plane, node_->size, node_->is_tile, threads_);
+    ParameterField fit = stretched(*plane, node_->size, node_->is_tile, threads_);
     material::clamp_to(fit, 0, 1);
     for (int y = 0; y < node_->size.height; ++y) {
       for (int x = 0; x < node_->size.width; ++x)
         planes(x, y, static_cast<int>(p)) = static_cast<float>(fit.at(x, y));
     }
   }
-  return Field::of(std::move(planes));
+  return ParameterField::of(std::move(planes));
 }
 
 }  // namespace weft::app

@@ -20,23 +20,23 @@ class MaterialStack {
 
   /// Slopes of a normal (2 planes); kAnisotropy as an axis (2 planes), which kAnisotropyDeg is a part of. Not
   /// of the kind kFactor. The same bytes for any number of threads. Errors of read_field().
-  Result<material::Field> composed(material::Parameter parameter) const;
+  Result<material::ParameterField> composed(material::Parameter parameter) const;
 
   /// Where its numbers come from: of one place as it says, of several "derived", unless all are typed.
   std::string source(material::Parameter parameter) const;
 
   /// Planes R, G, B of weights of the layers at run time; without a map none.
-  Result<material::Field> weights() const;
+  Result<material::ParameterField> weights() const;
 
  private:
   MaterialStack(const MaterialNode& node, std::vector<MapSet> layers, int threads)
       : node_(&node), layers_(std::move(layers)), threads_(threads) {}
-  Result<material::Field> own(material::Parameter parameter) const;
-  Result<material::Field> table_value(const char* table, const KeptValues& values,
-                                      material::Parameter parameter) const;
-  Result<void> lay_layer(std::size_t i, material::Parameter parameter, material::Field& below) const;
-  Result<void> put_over(material::Parameter parameter, material::Field& field) const;
-  Result<material::Field> mask_of(std::size_t i, const material::Field& height_mm) const;
+  Result<material::ParameterField> own(material::Parameter parameter) const;
+  Result<material::ParameterField> table_value(const char* table, const KeptValues& values,
+                                               material::Parameter parameter) const;
+  Result<void> lay_layer(std::size_t i, material::Parameter parameter, material::ParameterField& below) const;
+  Result<void> put_over(material::Parameter parameter, material::ParameterField& field) const;
+  Result<material::ParameterField> mask_of(std::size_t i, const material::ParameterField& height_mm) const;
   Result<void> find_masks();
   bool reaches(std::size_t i, material::Parameter parameter) const;
   bool changes(std::size_t i, material::Parameter parameter) const;
@@ -44,7 +44,7 @@ class MaterialStack {
   const MaterialNode* node_;
   std::vector<MapSet> layers_;
   int threads_;
-  std::vector<material::Field> masks_;
+  std::vector<material::ParameterField> masks_;
 };
 
 }  // namespace weft::app

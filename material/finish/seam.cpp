@@ -87,7 +87,8 @@ struct Band {
   }
 };
 
-double residual_ratio(const Tile& tile, const Surface& before, const Band& band, const TileOptions& options) {
+double residual_ratio(const Tile& tile, const Surface& before, const Band& band,
+                      const TilingOptions& options) {
   double squares = 0;
   for (int p = 0; p < 2; ++p) {
     const Axis axis = band.overlap.axis;
@@ -106,7 +107,7 @@ double residual_ratio(const Tile& tile, const Surface& before, const Band& band,
 }  // namespace
 
 Seam seam_of(const Tile& tile, const Surface& before, const Overlap& overlap, const Cut& cut, int skip,
-             const TileOptions& options) {
+             const TilingOptions& options) {
   const Axis axis = overlap.axis;
   const double repeat = axis == Axis::kX ? options.repeat_x_px : options.repeat_y_px;
   const Slopes slopes(tile.surface, axis), slopes_before(before, axis);

@@ -9,6 +9,6 @@ namespace weft::material {
 /// its first pixel the tile's. The first `skip` places across the axis are left out: another joint changed
 /// them.
 Seam seam_of(const Tile& tile, const Surface& before, const Overlap& overlap, const Cut& cut, int skip,
-             const TileOptions& options);
+             const TilingOptions& options);
 
 }  // namespace weft::material

@@ -35,7 +35,7 @@ struct Side {
   std::vector<int> starts;
 };
 
-Result<Side> side_of(int length, int period, double repeat, const TileOptions& options, const char* axis) {
+Result<Side> side_of(int length, int period, double repeat, const TilingOptions& options, const char* axis) {
   if (repeat > length / 2.0) {
     return no_tile(
         ErrorKind::kBadData,
@@ -184,7 +184,7 @@ void make_integrable(const Cut& across, const Cut& down, int feather, Tile& tile
   tile.normal_p99_at_cuts_deg = static_cast<double>(quantile(std::move(at_cuts), 0.99));
 }
 
-Result<void> check_options(const Surface& surface, const TileOptions& options) {
+Result<void> check_options(const Surface& surface, const TilingOptions& options) {
   if (auto usable = check_surface(surface, 2 * kLeastOverlap_px, kNoTile); !usable) return usable;
   if (surface.is_tile)
     return no_tile(ErrorKind::kUsage, "it is a tile already", "take the cloth it was cut from");
@@ -197,15 +197,15 @@ Result<void> check_options(const Surface& surface, const TileOptions& options) {
 
 }  // namespace
 
-TileOptions tile_of(const Straightened& straightened) {
-  TileOptions options;
+TilingOptions tile_of(const Straightened& straightened) {
+  TilingOptions options;
   options.period_px = straightened.period_px;
   options.repeat_x_px = static_cast<double>(straightened.period_px.width) / straightened.repeats_x;
   options.repeat_y_px = static_cast<double>(straightened.period_px.height) / straightened.repeats_y;
   return options;
 }
 
-Result<Tile> tile(const Surface& surface, const TileOptions& options) {
+Result<Tile> tile(const Surface& surface, const TilingOptions& options) {
   if (auto fine = check_options(surface, options); !fine) return std::move(fine).error();
   const Size size = surface.size();
   const auto x = side_of(size.width, options.period_px.width, options.repeat_x_px, options, "x");

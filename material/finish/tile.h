@@ -9,7 +9,7 @@
 namespace weft::material {
 
 /// What is asked of a tile.
-struct TileOptions {
+struct TilingOptions {
   Size period_px = {};  ///< of the tile; 0: as wide, as high as fits
   /// Of the repeat along x and y, pixels; 0: a cloth without repeat, cut where it is closest to itself.
   double repeat_x_px = 0, repeat_y_px = 0;
@@ -20,7 +20,7 @@ struct TileOptions {
 };
 
 /// The period and the repeat that straighten() left.
-TileOptions tile_of(const Straightened& straightened);
+TilingOptions tile_of(const Straightened& straightened);
 
 /// One joint of a tile, along one axis. But for the steps at the border all are of what lies within ten
 /// pixels of the cut, over the same of both sides before they were joined: 1 means that nothing is to be
@@ -59,6 +59,6 @@ struct Tile {
 /// kUsage for a tile of a tile, a feather out of range and a period that is no whole number of repeats;
 /// kBadData as in find_lattice(), where a repeat is wider than half the cloth, and where period and overlap
 /// do not fit in. Same bytes for any thread count.
-Result<Tile> tile(const Surface& surface, const TileOptions& options);
+Result<Tile> tile(const Surface& surface, const TilingOptions& options);
 
 }  // namespace weft::material

@@ -95,7 +95,7 @@ Image<float> turned_once(const Image<float>& map) {
 }
 
 // Planes of slopes and axes by a quarter turn, an axis by twice as much.
-void turn_values(Field& field, BlendSpace space) {
+void turn_values(ParameterField& field, BlendSpace space) {
   if (space == BlendSpace::kSlope) {
     const auto turn = [](auto& x, auto& y) { x = -std::exchange(y, x); };
     if (!field.is_map()) return turn(field.constant[0], field.constant[1]);
@@ -152,8 +152,9 @@ Result<LayerFit> fit_layer(const FitSizes& sizes, bool below_is_tile) {
   return fit;
 }
 
-Field fitted(const Field& field, BlendSpace space, const LayerFit& fit, Size size, int threads) {
-  Field turned = copy_of(field);
+ParameterField fitted(const ParameterField& field, BlendSpace space, const LayerFit& fit, Size size,
+                      int threads) {
+  ParameterField turned = copy_of(field);
   for (int i = 0; i < fit.quarter_turns; ++i) {
     if (turned.is_map()) turned.map = turned_once(turned.map);
     turn_values(turned, space);
@@ -163,7 +164,7 @@ Field fitted(const Field& field, BlendSpace space, const LayerFit& fit, Size siz
   if (!turned.is_map()) return turned;
   Image<float> map(size, turned.planes);
   for (int p = 0; p < turned.planes; ++p) resample(turned.map.plane(p), map.plane(p), fit, threads);
-  return Field::of(std::move(map));
+  return ParameterField::of(std::move(map));
 }
 
 }  // namespace weft::material

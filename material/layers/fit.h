@@ -38,6 +38,7 @@ Result<LayerFit> fit_layer(const FitSizes& sizes, bool below_is_tile);
 /// tent as wide as a pixel of the grid's where it has more. Slopes are divided by the stretch, so that they
 /// stay those of the same heights; turned slopes and axes point where the turned cloth does. A layer of the
 /// grid's own pixels comes back bit for bit. The same bytes for any number of threads.
-Field fitted(const Field& field, BlendSpace space, const LayerFit& fit, Size size, int threads);
+ParameterField fitted(const ParameterField& field, BlendSpace space, const LayerFit& fit, Size size,
+                      int threads);
 
 }  // namespace weft::material

@@ -77,7 +77,7 @@ Blend blend_of(Parameter parameter, const LayOptions& options) {
   return nullptr;
 }
 
-Values values_at(const Field& field, int x, int y) {
+Values values_at(const ParameterField& field, int x, int y) {
   Values values = {};
   for (int p = 0; p < field.planes; ++p) values[static_cast<std::size_t>(p)] = field.at(x, y, p);
   return values;
@@ -90,9 +90,10 @@ Error misfit(const char* what, Size a, Size b) {
 }
 
 // The grid of those fields that are maps; no size where none is.
-Result<Size> common_grid(const Field& below, const Field& layer, const Field& mask) {
+Result<Size> common_grid(const ParameterField& below, const ParameterField& layer,
+                         const ParameterField& mask) {
   Size size;
-  for (const Field* field : {&below, &layer, &mask}) {
+  for (const ParameterField* field : {&below, &layer, &mask}) {
     if (!field->is_map()) continue;
     if (size.pixels() != 0 && !(size == field->map.size()))
       return misfit("its maps", field->map.size(), size);
@@ -103,7 +104,7 @@ Result<Size> common_grid(const Field& below, const Field& layer, const Field& ma
   return size;
 }
 
-Image<float> filled(const Field& field, Size size) {
+Image<float> filled(const ParameterField& field, Size size) {
   Image<float> map(size, field.planes);
   for (int p = 0; p < field.planes; ++p) {
     const float value = static_cast<float>(field.constant[static_cast<std::size_t>(p)]);
@@ -125,8 +126,8 @@ std::optional<LayerBlend> layer_blend_named(std::string_view name) {
   return {};
 }
 
-Field copy_of(const Field& field) {
-  Field copy = {field.planes, field.constant, {}};
+ParameterField copy_of(const ParameterField& field) {
+  ParameterField copy = {field.planes, field.constant, {}};
   if (!field.is_map()) return copy;
   copy.map = Image<float>(field.map.size(), field.planes);
   for (int p = 0; p < field.planes; ++p) {
@@ -136,7 +137,7 @@ Field copy_of(const Field& field) {
   return copy;
 }
 
-std::array<double, 3> means_of(const Field& field) {
+std::array<double, 3> means_of(const ParameterField& field) {
   if (!field.is_map()) return field.constant;
   std::array<double, 3> means = {};
   for (int p = 0; p < field.planes; ++p) {
@@ -162,7 +163,7 @@ std::array<double, 2> axis_of(double anisotropy, double azimuth_deg) {
   return {anisotropy * std::cos(twice), anisotropy * std::sin(twice)};
 }
 
-Axis axis_from(double cosine, double sine) {
+YarnAxis axis_from(double cosine, double sine) {
   const double anisotropy = std::hypot(cosine, sine);
   if (!(anisotropy > 0)) return {};
   const double azimuth_deg = degrees(std::atan2(sine, cosine)) / 2;
@@ -170,8 +171,8 @@ Axis axis_from(double cosine, double sine) {
   return {std::min(anisotropy, 1.0), positive < 180 ? positive : 0};
 }
 
-Result<void> lay(Parameter parameter, Field& below, const Field& layer, const Field& mask,
-                 const LayOptions& options) {
+Result<void> lay(Parameter parameter, ParameterField& below, const ParameterField& layer,
+                 const ParameterField& mask, const LayOptions& options) {
   const Blend blend = blend_of(parameter, options);
   if (blend == nullptr) return {};
   const Result<Size> grid = common_grid(below, layer, mask);
@@ -199,7 +200,7 @@ Result<void> lay(Parameter parameter, Field& below, const Field& layer, const Fi
   return {};
 }
 
-void multiply(Field& field, const std::array<double, 3>& factors, int threads) {
+void multiply(ParameterField& field, const std::array<double, 3>& factors, int threads) {
   if (!field.is_map()) {
     for (std::size_t p = 0; p < factors.size(); ++p) field.constant[p] *= factors[p];
     return;
@@ -213,7 +214,7 @@ void multiply(Field& field, const std::array<double, 3>& factors, int threads) {
   });
 }
 
-std::int64_t clamp_to(Field& field, double least, double most) {
+std::int64_t clamp_to(ParameterField& field, double least, double most) {
   std::int64_t changed = 0;
   if (!field.is_map()) {
     for (int p = 0; p < field.planes; ++p) {

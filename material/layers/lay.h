@@ -33,13 +33,13 @@ struct LayOptions {
 ///
 /// kDetail leaves every parameter alone but albedo, normal, height and roughness. A mask narrows the layer's
 /// lobe as it flattens its slopes. A plane of an albedo whose mean is not above 0 leaves what is below.
-Result<void> lay(Parameter parameter, Field& below, const Field& layer, const Field& mask,
-                 const LayOptions& options);
+Result<void> lay(Parameter parameter, ParameterField& below, const ParameterField& layer,
+                 const ParameterField& mask, const LayOptions& options);
 
 /// Multiplies each plane: albedo by its tint, slopes by their scale.
-void multiply(Field& field, const std::array<double, 3>& factors, int threads);
+void multiply(ParameterField& field, const std::array<double, 3>& factors, int threads);
 
 /// Brings values into `least` to `most`, and says of how many that changed.
-std::int64_t clamp_to(Field& field, double least, double most);
+std::int64_t clamp_to(ParameterField& field, double least, double most);
 
 }  // namespace weft::material

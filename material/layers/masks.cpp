@@ -11,7 +11,7 @@ namespace {
 
 // Each value of a field of one plane by `change`.
 template <typename Change>
-void change_each(Field& field, const Change& change) {
+void change_each(ParameterField& field, const Change& change) {
   if (!field.is_map()) {
     field.constant[0] = change(field.constant[0]);
     return;
@@ -24,7 +24,7 @@ void change_each(Field& field, const Change& change) {
 
 }  // namespace
 
-Result<void> level(Field& mask, const MaskLevels& levels) {
+Result<void> level(ParameterField& mask, const MaskLevels& levels) {
   const double span = levels.one - levels.zero;
   if (span == 0)
     return Error{ErrorKind::kUsage, "a mask cannot be levelled", "levels", "both values are alike",
@@ -33,19 +33,19 @@ Result<void> level(Field& mask, const MaskLevels& levels) {
   return {};
 }
 
-Result<Field> cavity_mask(const Field& height_mm, const CavityMaskOptions& options) {
-  if (!height_mm.is_map()) return Field::same(0.5);
+Result<ParameterField> cavity_mask(const ParameterField& height_mm, const CavityMaskOptions& options) {
+  if (!height_mm.is_map()) return ParameterField::same(0.5);
   Result<Cavity> found = cavity(height_mm.map.plane(), {.mm_per_pixel = options.mm_per_pixel,
                                                         .radius_mm = options.radius_mm,
                                                         .range_mm = options.range_mm,
                                                         .is_tile = options.is_tile,
                                                         .threads = options.threads});
   if (!found) return std::move(found).error();
-  return Field::of(std::move(found->cavity));
+  return ParameterField::of(std::move(found->cavity));
 }
 
-Field height_mask(const Field& height_mm, double at_mm, double soft_mm) {
-  Field mask = copy_of(height_mm);
+ParameterField height_mask(const ParameterField& height_mm, double at_mm, double soft_mm) {
+  ParameterField mask = copy_of(height_mm);
   change_each(mask, [&](double height) {
     if (!(soft_mm > 0)) return height > at_mm ? 1.0 : 0.0;
     const double t = std::clamp((height - at_mm) / soft_mm + 0.5, 0.0, 1.0);

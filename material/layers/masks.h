@@ -13,7 +13,7 @@ struct MaskLevels {
   double zero = 0, one = 1;
 };
 /// kUsage where both are alike.
-Result<void> level(Field& mask, const MaskLevels& levels);
+Result<void> level(ParameterField& mask, const MaskLevels& levels);
 
 struct CavityMaskOptions {
   double mm_per_pixel = 0;
@@ -23,9 +23,9 @@ struct CavityMaskOptions {
   int threads = 0;
 };
 /// cavity() of a height: 0 deep, 0.5 flat, 1 high; of one that is the same everywhere 0.5.
-Result<Field> cavity_mask(const Field& height_mm, const CavityMaskOptions& options);
+Result<ParameterField> cavity_mask(const ParameterField& height_mm, const CavityMaskOptions& options);
 
 /// 1 above `at_mm` and 0 below it, with 3 t^2 - 2 t^3 over `soft_mm` in between; a soft_mm of 0 is a step.
-Field height_mask(const Field& height_mm, double at_mm, double soft_mm);
+ParameterField height_mask(const ParameterField& height_mm, double at_mm, double soft_mm);
 
 }  // namespace weft::material

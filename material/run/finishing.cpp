@@ -177,7 +177,7 @@ class Finisher {
   }
 
   Result<Json> tile() {
-    material::TileOptions options = tile_.value_or(material::TileOptions());
+    material::TilingOptions options = tile_.value_or(material::TilingOptions());
     options.threads = context_.threads;
     if (!tile_)
       warn("NOT_STRAIGHTENED", "the tile is cut where the cloth is closest to itself, without its repeat",
@@ -315,8 +315,8 @@ class Finisher {
   const FinishingInput& input_;
   const JobContext& context_;
   std::optional<Lattice> lattice_;
-  std::optional<material::TileOptions> tile_;  // of a cloth that was straightened
-  bool is_left_turned_ = false;                // straightening was told to, and said why not
+  std::optional<material::TilingOptions> tile_;  // of a cloth that was straightened
+  bool is_left_turned_ = false;                  // straightening was told to, and said why not
 };
 
 }  // namespace

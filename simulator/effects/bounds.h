@@ -37,6 +37,6 @@ EffectBounds bounds_of(const Scene& scene, const SceneRig& rig);
 /// these. An effect stays while one that needs it does: near_light for relief, finite_led and vignetting,
 /// relief for cast_shadows and interreflection. Noise always stays.
 EffectSettings effects_within(const Scene& scene, const SceneRig& rig, double to_sigma,
-                              std::vector<LeftOut>& left_out);
+                              std::vector<LeftOutEffect>& left_out);
 
 }  // namespace weft::simulator

@@ -30,7 +30,7 @@ constexpr bool EffectSettings::*kDearest[] = {&EffectSettings::interreflection, 
 }  // namespace
 
 EffectSettings effects_within(const Scene& scene, const SceneRig& rig, double to_sigma,
-                              std::vector<LeftOut>& left_out) {
+                              std::vector<LeftOutEffect>& left_out) {
   const std::span<const EffectKey> keys = effect_keys();
   const EffectBounds bounds = bounds_of(scene, rig);
   EffectSettings on;

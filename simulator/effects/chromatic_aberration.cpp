@@ -5,14 +5,15 @@
 namespace weft::simulator {
 
 Pass chromatic_aberration_pass(const Scene& scene, const SceneRig& rig, const Halos& halos) {
-  return {"lateral colour", "shows red and blue at another scale than green", Stage::kShot,
-          [lens = LateralColour(scene.camera.chromatic, rig.camera), halo = halos.bloom_rows](Tile& tile) {
-            const Rect shown_rect = grown(tile.rect, halo);
-            std::vector<Rgb> shown(static_cast<std::size_t>(shown_rect.pixels()));
-            lens.image(tile.signal, tile.signal_rect, shown_rect, shown);
-            tile.signal = std::move(shown);
-            tile.signal_rect = shown_rect;
-          }};
+  return {
+      "lateral colour", "shows red and blue at another scale than green", Stage::kShot,
+      [lens = LateralColour(scene.camera.chromatic, rig.camera), halo = halos.bloom_rows](PassTile& tile) {
+        const Rect shown_rect = grown(tile.rect, halo);
+        std::vector<Rgb> shown(static_cast<std::size_t>(shown_rect.pixels()));
+        lens.image(tile.signal, tile.signal_rect, shown_rect, shown);
+        tile.signal = std::move(shown);
+        tile.signal_rect = shown_rect;
+      }};
 }
 
 }  // namespace weft::simulator

@@ -6,19 +6,20 @@ namespace weft::simulator {
 
 Pass geometry_pass(const Scene& scene) {
   const auto pass = [](const auto& surface) {
-    return [surface](Tile& tile) {
+    return [surface](PassTile& tile) {
       for (std::size_t i = 0; i < tile.surface.size(); ++i) {
         tile.surface[i] = surface.at(tile.point_mm[i].x, tile.point_mm[i].y);
       }
     };
   };
   return {"geometry", "gives the cloth its height, normal and yarn in closed form", Stage::kSurface,
-          std::visit([&](const auto& surface) -> std::function<void(Tile&)> { return pass(surface); },
+          std::visit([&](const auto& surface) -> std::function<void(PassTile&)> { return pass(surface); },
                      surface_of(scene.geometry))};
 }
 
 Pass relief_pass() {
-  return {"relief", "lifts each point from the plane to the cloth's height", Stage::kSurface, [](Tile& tile) {
+  return {"relief", "lifts each point from the plane to the cloth's height", Stage::kSurface,
+          [](PassTile& tile) {
             for (std::size_t i = 0; i < tile.surface.size(); ++i)
               tile.point_mm[i].z += tile.surface[i].height_mm;
           }};

@@ -51,7 +51,7 @@ Rect common(Rect a, Rect b) {
 
 Pass damage_pass(const Scene& scene) {
   return {"damage", "makes parts of frames missing, saturated, black or fade", Stage::kShot,
-          [parts = parts_of(scene)](Tile& tile) {
+          [parts = parts_of(scene)](PassTile& tile) {
             const auto channels = tile.samples.size() / static_cast<std::size_t>(std::max<std::int64_t>(
                                                             tile.sample_rect.pixels(), 1));
             for (const Part& part : parts) {

@@ -14,7 +14,7 @@ Pass bounces_pass(const Scene& scene, const Halos& halos) {
   settings.stream = kBounceStream;
   const int halo = halos.of_signal() + (halos.bounces - 1) * halos.bounce;
   return {"bounces", "follows light from cloth to cloth, once for all LEDs", Stage::kSurface,
-          [settings, halo](Tile& tile) {
+          [settings, halo](PassTile& tile) {
             if (tile.failure) return;
             std::vector<Vec3> normals(tile.surface.size());
             std::transform(tile.surface.begin(), tile.surface.end(), normals.begin(),
@@ -38,7 +38,7 @@ Pass bounces_pass(const Scene& scene, const Halos& halos) {
 
 Pass interreflection_pass(const Scene& scene, const SceneRig& rig) {
   return {"interreflection", "adds the light that reaches each point by way of the cloth", Stage::kLight,
-          [unit = rig.signal_of_unit(scene.camera.iso), bounces = scene.transport.bounces](Tile& tile) {
+          [unit = rig.signal_of_unit(scene.camera.iso), bounces = scene.transport.bounces](PassTile& tile) {
             tile.indirect.assign(tile.irradiance.size(), Rgb{});
             if (tile.led == 0 || tile.failure) return;
             std::vector<Rgb> direct(tile.irradiance.size());

@@ -5,7 +5,7 @@ namespace weft::simulator {
 
 Pass lambert_pass(const Scene& scene, const SceneRig& rig) {
   return {"lambert", "reflects light alike in all directions", Stage::kLight,
-          [unit = rig.signal_of_unit(scene.camera.iso)](Tile& tile) {
+          [unit = rig.signal_of_unit(scene.camera.iso)](PassTile& tile) {
             tile.signal_rect = tile.area;
             tile.signal.resize(tile.irradiance.size());
             if (tile.led == 0) return std::fill(tile.signal.begin(), tile.signal.end(), Rgb{});

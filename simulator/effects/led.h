@@ -8,8 +8,8 @@ namespace weft::simulator {
 /// Fills `light` and `irradiance` from incidence_at(led, point) and irradiance_of(incidence, normal); the
 /// dark shot has none.
 template <typename IncidenceAt, typename IrradianceOf>
-std::function<void(Tile&)> lit_by(const IncidenceAt& incidence_at, const IrradianceOf& irradiance_of) {
-  return [incidence_at, irradiance_of](Tile& tile) {
+std::function<void(PassTile&)> lit_by(const IncidenceAt& incidence_at, const IrradianceOf& irradiance_of) {
+  return [incidence_at, irradiance_of](PassTile& tile) {
     if (tile.led == 0) {
       std::fill(tile.light.begin(), tile.light.end(), Incidence{});
       std::fill(tile.irradiance.begin(), tile.irradiance.end(), 0.0);

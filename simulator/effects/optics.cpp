@@ -27,7 +27,7 @@ std::vector<Rgb> cropped(const std::vector<Rgb>& signal, Rect from, Rect to) {
 
 Pass vignetting_pass(const Scene& scene, const SceneRig& rig) {
   return {"vignetting", "darkens the frame towards its corners", Stage::kShot,
-          [vignette = Vignette(scene.camera.vignette, rig.camera)](Tile& tile) {
+          [vignette = Vignette(scene.camera.vignette, rig.camera)](PassTile& tile) {
             for_each_pixel(tile.signal_rect, [&](std::size_t i, int x, int y) {
               const double gain = vignette.gain(x, y);
               for (double& s : tile.signal[i]) s *= gain;
@@ -36,14 +36,15 @@ Pass vignetting_pass(const Scene& scene, const SceneRig& rig) {
 }
 
 Pass defocus_pass(const Scene& scene, const Halos& halos) {
-  return {"defocus", "blurs by a disc and by the lens's point spread", Stage::kShot,
-          [kernel = blur_kernel(scene.camera.blur), halo = halos.bloom_rows + halos.chromatic](Tile& tile) {
-            const Rect sharp_rect = grown(tile.rect, halo + kernel.radius);
-            const std::vector<Rgb> sharp = cropped(tile.signal, tile.signal_rect, sharp_rect);
-            tile.signal_rect = grown(tile.rect, halo);
-            tile.signal.resize(static_cast<std::size_t>(tile.signal_rect.pixels()));
-            convolve(kernel, numbers_of(sharp), tile.signal_rect, 3, numbers_of(tile.signal));
-          }};
+  return {
+      "defocus", "blurs by a disc and by the lens's point spread", Stage::kShot,
+      [kernel = blur_kernel(scene.camera.blur), halo = halos.bloom_rows + halos.chromatic](PassTile& tile) {
+        const Rect sharp_rect = grown(tile.rect, halo + kernel.radius);
+        const std::vector<Rgb> sharp = cropped(tile.signal, tile.signal_rect, sharp_rect);
+        tile.signal_rect = grown(tile.rect, halo);
+        tile.signal.resize(static_cast<std::size_t>(tile.signal_rect.pixels()));
+        convolve(kernel, numbers_of(sharp), tile.signal_rect, 3, numbers_of(tile.signal));
+      }};
 }
 
 }  // namespace weft::simulator

@@ -18,7 +18,7 @@ constexpr int kLargeHalo = 64;
 
 }  // namespace
 
-void Tile::resize(Rect tile, int halo) {
+void PassTile::resize(Rect tile, int halo) {
   rect = tile;
   area = grown(tile, halo);
   const auto pixels = static_cast<std::size_t>(area.pixels());
@@ -57,7 +57,7 @@ void PassRunner::run_stage(Stage stage, Worker& worker) const {
 }
 
 void PassRunner::light(Worker& worker) const {
-  Tile& tile = worker.tile;
+  PassTile& tile = worker.tile;
   const bool one_each = tile.shot <= list_.leds || list_.leds == 0;
   tile.led = one_each ? tile.shot : (tile.shot - 1) % list_.leds + 1;
   if (list_.lit_together.empty()) return run_stage(Stage::kLight, worker);
@@ -73,13 +73,13 @@ void PassRunner::light(Worker& worker) const {
 }
 
 Result<void> PassRunner::run(Rect area, std::span<const int> shots, std::stop_token stop,
-                             const std::function<void(const Tile&)>& with_surface,
-                             const std::function<void(const Tile&)>& with_shot) {
+                             const std::function<void(const PassTile&)>& with_surface,
+                             const std::function<void(const PassTile&)>& with_shot) {
   // The tile loop starts at column 0, an area anywhere.
   const Rect whole = {0, 0, area.width(), area.height()};
   Result<void> done = for_each_tile(whole, options_, std::move(stop), [&](Rect part, int w) {
     Worker& worker = workers_[static_cast<std::size_t>(w)];
-    Tile& tile = worker.tile;
+    PassTile& tile = worker.tile;
     if (tile.failure) return;
     tile.resize({area.x0 + part.x0, area.y0 + part.y0, area.x0 + part.x1, area.y0 + part.y1}, list_.halo);
     tile.shot = tile.led = 0;

@@ -32,7 +32,7 @@ inline constexpr int kCloth = -1;
 
 /// What the passes of one tile hand on. Every value depends on the pixel's place in the frame and on the
 /// shot, never on the tile. Each array covers one rectangle of the frame, row by row.
-struct Tile {
+struct PassTile {
   Rect rect;     ///< the pixels that are asked for
   Rect area;     ///< `rect` and the halo that shadows, bounces and blur look into
   int shot = 0;  ///< number of the shot (PassRunner::run)
@@ -95,12 +95,12 @@ struct Pass {
   std::string name;
   std::string does;  ///< one sentence for `weft simulate --explain`
   Stage stage = Stage::kSurface;
-  std::function<void(Tile&)> run;
+  std::function<void(PassTile&)> run;
   std::string effect = {};  ///< key of the effect that called for it; empty for what every scene needs
 };
 
 /// An effect that has no pass.
-struct LeftOut {
+struct LeftOutEffect {
   std::string name;
   std::string why;
   double bound_sigma = 0;  ///< what it would change at most, in sigma of the noise; 0 where nobody asked
@@ -136,14 +136,14 @@ class PassRunner {
   /// of `shots` the shot passes and `with_shot`. Shot 0 is dark, shots 1 to n are those of the n LEDs, n + 1
   /// to 2 n light the LEDs again, and so on.
   Result<void> run(Rect area, std::span<const int> shots, std::stop_token stop,
-                   const std::function<void(const Tile&)>& with_surface,
-                   const std::function<void(const Tile&)>& with_shot);
+                   const std::function<void(const PassTile&)>& with_surface,
+                   const std::function<void(const PassTile&)>& with_shot);
 
   std::vector<PassCost> costs() const;
 
  private:
   struct Worker {
-    Tile tile;
+    PassTile tile;
     std::vector<std::chrono::nanoseconds> spent;  ///< by pass
     std::vector<std::int64_t> pixels;
     std::vector<Rgb> sum;  ///< signal of the LEDs so far, where several are lit

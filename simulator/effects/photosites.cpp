@@ -9,7 +9,7 @@ namespace weft::simulator {
 
 Pass mosaic_pass(int halo_rows) {
   return {"mosaic", "keeps the colour that each photosite's filter passes", Stage::kShot,
-          [halo_rows](Tile& tile) {
+          [halo_rows](PassTile& tile) {
             constexpr CfaPattern kCfa;
             tile.sample_rect = grown_in_rows(tile.rect, halo_rows);
             tile.samples.resize(static_cast<std::size_t>(tile.sample_rect.pixels()));
@@ -26,7 +26,7 @@ Pass mosaic_pass(int halo_rows) {
 }
 
 Pass rgb_pass() {
-  return {"rgb", "keeps all three colours of each pixel", Stage::kShot, [](Tile& tile) {
+  return {"rgb", "keeps all three colours of each pixel", Stage::kShot, [](PassTile& tile) {
             tile.sample_rect = tile.rect;
             tile.samples.clear();
             for_each_pixel(tile.rect, [&](std::size_t, int x, int y) {
@@ -38,7 +38,7 @@ Pass rgb_pass() {
 
 Pass noise_pass(const Scene& scene, const SceneRig& rig) {
   return {"noise", "draws photons (Poisson) and read noise (normal)", Stage::kShot,
-          [sensor = rig.sensor, key = random_key(scene)](Tile& tile) {
+          [sensor = rig.sensor, key = random_key(scene)](PassTile& tile) {
             const std::size_t channels =
                 tile.samples.size() / static_cast<std::size_t>(tile.sample_rect.pixels());
             for_each_pixel(tile.sample_rect, [&](std::size_t i, int x, int y) {
@@ -55,7 +55,7 @@ Pass noise_pass(const Scene& scene, const SceneRig& rig) {
 
 Pass converter_pass(const SceneRig& rig) {
   return {"converter", "adds the black level, rounds to whole counts and clips at 0 and white", Stage::kShot,
-          [sensor = rig.sensor](Tile& tile) {
+          [sensor = rig.sensor](PassTile& tile) {
             tile.counts.resize(tile.samples.size());
             for (std::size_t i = 0; i < tile.counts.size(); ++i)
               tile.counts[i] = count_of(sensor, tile.samples[i]);

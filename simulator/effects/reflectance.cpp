@@ -51,9 +51,9 @@ Rgb reflected_by(const Model& model, const Rgb& albedo, Vec3 to_light, Vec3 to_v
 
 Pass reflectance_pass(const Scene& scene, const SceneRig& rig) {
   const double radius_mm = scene.effects.finite_led ? scene.lights.led_radius_mm : 0;
-  const auto pass = [&](const auto& model) -> std::function<void(Tile&)> {
+  const auto pass = [&](const auto& model) -> std::function<void(PassTile&)> {
     return [model, radius_mm, lobe_share = rig.lobe_share, camera_mm = rig.camera_centre_mm(),
-            unit = rig.signal_of_unit(scene.camera.iso)](Tile& tile) {
+            unit = rig.signal_of_unit(scene.camera.iso)](PassTile& tile) {
       tile.signal_rect = tile.area;
       tile.signal.assign(tile.irradiance.size(), Rgb{});
       if (tile.led == 0) return;

@@ -17,8 +17,8 @@ double gain_of(const LightSettings& lights, int leds, int shot, int take, std::a
 }
 
 /// Adds `of_led[led]` times albedo, and times what of the sky the cloth leaves open.
-std::function<void(Tile&)> even_light(std::vector<Rgb> of_led) {
-  return [of_led = std::move(of_led)](Tile& tile) {
+std::function<void(PassTile&)> even_light(std::vector<Rgb> of_led) {
+  return [of_led = std::move(of_led)](PassTile& tile) {
     const Rgb light = of_led[static_cast<std::size_t>(tile.led)];
     for (std::size_t i = 0; i < tile.signal.size(); ++i) {
       const double open = tile.openness.empty() ? 1 : tile.openness[i];
@@ -43,7 +43,7 @@ std::vector<Rgb> signal_at_centre(const Scene& scene, const SceneRig& rig) {
 Pass led_drift_pass(const Scene& scene, const SceneRig& rig) {
   return {"led drift", "fades the LEDs over the session and lets each shot flicker", Stage::kLight,
           [lights = scene.lights, leds = static_cast<int>(rig.leds.leds.size()),
-           key = random_key(scene)](Tile& tile) {
+           key = random_key(scene)](PassTile& tile) {
             if (tile.led == 0) return;
             const double gain = gain_of(lights, leds, tile.shot, tile.take, key);
             for (Rgb& signal : tile.signal) {

@@ -26,7 +26,7 @@ std::vector<Carrier> carriers_of(const Scene& scene) {
 }
 
 /// The share of the light at a point that enters there; paper lets none in.
-double share_at(const Tile& tile, std::size_t i, const std::array<double, 2>& shares) {
+double share_at(const PassTile& tile, std::size_t i, const std::array<double, 2>& shares) {
   if (!tile.target.empty() && tile.target[i] != kCloth) return 0;
   return shares[tile.surface[i].yarn.is_weft];
 }
@@ -37,7 +37,7 @@ Pass translucency_pass(const Scene& scene, const SceneRig& rig, const Halos& hal
   const auto [warp, weft] = scene.material.translucency.yarns();
   return {"translucency", "lets light enter a yarn and leave beside it", Stage::kLight,
           [carriers = carriers_of(scene), shares = std::array{warp.share, weft.share},
-           unit = rig.signal_of_unit(scene.camera.iso), halo = halos.of_signal()](Tile& tile) {
+           unit = rig.signal_of_unit(scene.camera.iso), halo = halos.of_signal()](PassTile& tile) {
             if (tile.led == 0 || tile.failure) return;
             const Rect out_rect = grown(tile.rect, halo);
             std::vector<double> left(static_cast<std::size_t>(out_rect.pixels())), entered;

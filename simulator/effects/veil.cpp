@@ -20,7 +20,7 @@ class Veils {
   Veils(const VeilSettings& settings, Size frame, PassList light)
       : settings_(settings), frame_(frame), light_(std::move(light)) {}
 
-  Result<std::shared_ptr<const FrameLight>> of(const Tile& tile) {
+  Result<std::shared_ptr<const FrameLight>> of(const PassTile& tile) {
     const std::lock_guard lock(mutex_);
     const std::pair shot = {tile.take, tile.lit_together};
     const auto known = veils_.find(shot);
@@ -31,7 +31,7 @@ class Veils {
   }
 
  private:
-  Result<FrameLight> light_of(const Tile& tile) const {
+  Result<FrameLight> light_of(const PassTile& tile) const {
     PassList list = light_;
     list.lit_together = tile.lit_together;
     list.takes_before = tile.take - tile.shot;
@@ -40,8 +40,8 @@ class Veils {
     for (int row = 0; row < light.rows(); ++row) {
       for (int column = 0; column < light.columns(); ++column) {
         const Result<void> ran = runner.run(
-            looked_at(light.cell(column, row)), {&tile.shot, 1}, {}, [](const Tile&) {},
-            [&](const Tile& part) { light.mean(column, row) = mean_of(part.signal); });
+            looked_at(light.cell(column, row)), {&tile.shot, 1}, {}, [](const PassTile&) {},
+            [&](const PassTile& part) { light.mean(column, row) = mean_of(part.signal); });
         if (!ran) return ran.error();
       }
     }
@@ -71,19 +71,19 @@ class Veils {
 }  // namespace
 
 Pass veil_pass(const Scene& scene, const SceneRig& rig, PassList light) {
-  return {
-      "veil", "adds the light that the lens spreads over the whole frame", Stage::kShot,
-      [veils = std::make_shared<Veils>(scene.camera.veil, rig.camera.size, std::move(light))](Tile& tile) {
-        const Result<std::shared_ptr<const FrameLight>> veil = veils->of(tile);
-        if (!veil) {
-          tile.failure = veil.error();
-          return;
-        }
-        for_each_pixel(tile.signal_rect, [&](std::size_t i, int x, int y) {
-          const Rgb added = (*veil)->at(x, y);
-          for (std::size_t c = 0; c < 3; ++c) tile.signal[i][c] += added[c];
-        });
-      }};
+  return {"veil", "adds the light that the lens spreads over the whole frame", Stage::kShot,
+          [veils = std::make_shared<Veils>(scene.camera.veil, rig.camera.size, std::move(light))](
+              PassTile& tile) {
+            const Result<std::shared_ptr<const FrameLight>> veil = veils->of(tile);
+            if (!veil) {
+              tile.failure = veil.error();
+              return;
+            }
+            for_each_pixel(tile.signal_rect, [&](std::size_t i, int x, int y) {
+              const Rgb added = (*veil)->at(x, y);
+              for (std::size_t c = 0; c < 3; ++c) tile.signal[i][c] += added[c];
+            });
+          }};
 }
 
 }  // namespace weft::simulator

@@ -10,7 +10,7 @@ namespace {
 
 std::string names_nearest_first(std::string_view wanted) {
   std::vector<std::string_view> names;
-  for (const Preset& each : presets()) names.push_back(each.name);
+  for (const ClothPreset& each : presets()) names.push_back(each.name);
   std::stable_sort(names.begin(), names.end(),
                    [&](auto a, auto b) { return edit_distance(wanted, a) < edit_distance(wanted, b); });
   std::string list;
@@ -22,7 +22,7 @@ Rgb grey(double value) {
   return {value, value, value};
 }
 
-std::vector<Preset> make_presets() {
+std::vector<ClothPreset> make_presets() {
   return {
       {"matte-cotton",
        MultipleScattering{0.2},
@@ -71,13 +71,13 @@ std::vector<Preset> make_presets() {
 
 }  // namespace
 
-std::span<const Preset> presets() {
-  static const std::vector<Preset> all = make_presets();
+std::span<const ClothPreset> presets() {
+  static const std::vector<ClothPreset> all = make_presets();
   return all;
 }
 
-Result<Preset> preset(std::string_view name) {
-  for (const Preset& each : presets()) {
+Result<ClothPreset> preset(std::string_view name) {
+  for (const ClothPreset& each : presets()) {
     if (each.name == name) return each;
   }
   return Error{ErrorKind::kBadData, "no such material", std::string(name),

@@ -14,7 +14,7 @@ namespace weft::simulator {
 
 /// A cloth by name. The numbers are plausible, not measured: refractive indices of the fibres give f0, the
 /// rest is chosen to look right.
-struct Preset {
+struct ClothPreset {
   struct Parameter {
     std::string name;
     std::string why;  ///< one line: what it stands for and why it has its value
@@ -27,9 +27,9 @@ struct Preset {
 };
 
 /// All presets, from matte to shiny.
-std::span<const Preset> presets();
+std::span<const ClothPreset> presets();
 
 /// The preset of that name; kBadData with all names, the nearest first, where there is none.
-Result<Preset> preset(std::string_view name);
+Result<ClothPreset> preset(std::string_view name);
 
 }  // namespace weft::simulator

@@ -145,7 +145,7 @@ void walk(Visitor& v, MaterialSettings& m) {
           "scene has none. `truth/scene.toml` has its numbers in its place"},
          named);
   if (named) {
-    const Result<Preset> found = preset(*named);
+    const Result<ClothPreset> found = preset(*named);
     v.require(found, "preset");
     if (found) {
       m.reflectance = found->reflectance;

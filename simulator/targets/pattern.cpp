@@ -76,11 +76,11 @@ int Pattern::ink_at(double u_mm, double v_mm) const {
   return inks_[cell_of(v_, v_mm) * (u_.size() - 1) + cell_of(u_, u_mm)];
 }
 
-double Pattern::coverage(const Spot& spot) const {
+double Pattern::coverage(const TargetSpot& spot) const {
   return covered(u_, spot.u_mm, spot.width_mm) * covered(v_, spot.v_mm, spot.height_mm);
 }
 
-Rgb Pattern::average(const Spot& spot, std::span<const Rgb> albedo_of_ink) const {
+Rgb Pattern::average(const TargetSpot& spot, std::span<const Rgb> albedo_of_ink) const {
   const Cover columns = cover(u_, spot.u_mm, spot.width_mm);
   const Cover rows = cover(v_, spot.v_mm, spot.height_mm);
   Rgb mean{};

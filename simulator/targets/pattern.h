@@ -21,7 +21,7 @@ inline constexpr int kFirstPatchInk = 2;
 
 /// A place on a target and what a pixel sees around it: u to the right and v up from its centre in its plane,
 /// a box with sides along u and v.
-struct Spot {
+struct TargetSpot {
   double u_mm = 0;
   double v_mm = 0;
   double width_mm = 0;   ///< of the box along u; 0 is a point
@@ -46,10 +46,10 @@ class Pattern {
   /// The ink at a point; beyond the sheet the nearest one.
   int ink_at(double u_mm, double v_mm) const;
   /// Share of the spot's box that lies on the sheet; 1 or 0 for a point.
-  double coverage(const Spot& spot) const;
+  double coverage(const TargetSpot& spot) const;
   /// Mean over what the spot's box covers of the sheet, exact; beyond the sheet the nearest ink's. An ink
   /// beyond the end of `albedo_of_ink` reflects nothing.
-  Rgb average(const Spot& spot, std::span<const Rgb> albedo_of_ink) const;
+  Rgb average(const TargetSpot& spot, std::span<const Rgb> albedo_of_ink) const;
 
  private:
   std::vector<double> u_;  ///< edges of the columns, rising

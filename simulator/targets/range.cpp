@@ -5,7 +5,7 @@
 
 namespace weft::simulator {
 
-Result<void> check(std::initializer_list<Setting> settings) {
+Result<void> check(std::initializer_list<NamedSetting> settings) {
   for (const auto& [name, value, range] : settings) {
     if (value >= range.least && value <= range.most) continue;
     return Error{ErrorKind::kBadData, "a target's setting is out of its range", name,

@@ -14,13 +14,13 @@ struct Range {
 };
 
 /// A setting by its name.
-struct Setting {
+struct NamedSetting {
   const char* name;
   double value;
   Range range;
 };
 
 /// kBadData for the first value that is not a number in its range.
-Result<void> check(std::initializer_list<Setting> settings);
+Result<void> check(std::initializer_list<NamedSetting> settings);
 
 }  // namespace weft::simulator

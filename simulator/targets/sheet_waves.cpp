@@ -59,7 +59,7 @@ PaperSheet::PaperSheet(const SheetSettings& settings, std::int64_t seed, int num
   }
 }
 
-void PaperSheet::add_waves(const Spot& spot, SheetPoint& point) const {
+void PaperSheet::add_waves(const TargetSpot& spot, SheetPoint& point) const {
   for (const Wave& wave : waves_) {
     const double angle = wave.k_u * spot.u_mm + wave.k_v * spot.v_mm + wave.phase;
     point.height_mm += wave.amplitude_mm * std::sin(angle);
@@ -68,7 +68,7 @@ void PaperSheet::add_waves(const Spot& spot, SheetPoint& point) const {
   }
 }
 
-void PaperSheet::add_grain(const Spot& spot, SheetPoint& point) const {
+void PaperSheet::add_grain(const TargetSpot& spot, SheetPoint& point) const {
   double grain_mm = grain_mm_;
   double strength = 1;
   std::uint32_t size = 0;
@@ -91,7 +91,7 @@ void PaperSheet::add_grain(const Spot& spot, SheetPoint& point) const {
   }
 }
 
-SheetPoint PaperSheet::at(const Spot& spot) const {
+SheetPoint PaperSheet::at(const TargetSpot& spot) const {
   SheetPoint point;
   if (waves_[0].amplitude_mm > 0) add_waves(spot, point);
   if (grain_albedo_ > 0 || grain_slope_ > 0) add_grain(spot, point);

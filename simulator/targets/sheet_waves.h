@@ -28,7 +28,7 @@ class PaperSheet {
  public:
   /// `number` is that of the target in its scene: targets of one seed differ.
   PaperSheet(const SheetSettings& settings, std::int64_t seed, int number);
-  SheetPoint at(const Spot& spot) const;
+  SheetPoint at(const TargetSpot& spot) const;
 
  private:
   struct Wave {
@@ -36,8 +36,8 @@ class PaperSheet {
     double amplitude_mm;
     double phase;
   };
-  void add_waves(const Spot& spot, SheetPoint& point) const;
-  void add_grain(const Spot& spot, SheetPoint& point) const;
+  void add_waves(const TargetSpot& spot, SheetPoint& point) const;
+  void add_grain(const TargetSpot& spot, SheetPoint& point) const;
 
   static constexpr int kWaves = 12;
   std::array<Wave, kWaves> waves_{};

@@ -68,14 +68,15 @@ std::optional<TargetHit> Target::hit(const ViewRay& ray) const {
   const auto moved = [&](Vec3 per) { return t * (per - (dot(normal_, per) / towards) * ray.direction); };
   const Vec3 dx = moved(ray.per_x);
   const Vec3 dy = moved(ray.per_y);
-  const Spot spot = {dot(place, u_axis_), dot(place, v_axis_), std::hypot(dot(dx, u_axis_), dot(dy, u_axis_)),
-                     std::hypot(dot(dx, v_axis_), dot(dy, v_axis_))};
+  const TargetSpot spot = {dot(place, u_axis_), dot(place, v_axis_),
+                           std::hypot(dot(dx, u_axis_), dot(dy, u_axis_)),
+                           std::hypot(dot(dx, v_axis_), dot(dy, v_axis_))};
   if (!(std::abs(spot.u_mm) < (width_mm() + spot.width_mm) / 2)) return std::nullopt;
   if (!(std::abs(spot.v_mm) < (height_mm() + spot.height_mm) / 2)) return std::nullopt;
   return TargetHit{spot, t * length(ray.direction)};
 }
 
-TargetPoint Target::at(const Spot& spot) const {
+TargetPoint Target::at(const TargetSpot& spot) const {
   const SheetPoint sheet = sheet_.at(spot);
   const Vec3 across = sheet.slope_u * u_axis_ + sheet.slope_v * v_axis_;
   return {place_mm(spot.u_mm, spot.v_mm) + sheet.height_mm * normal_, normalized(normal_ - across),

@@ -28,7 +28,7 @@ struct ViewRay {
 
 /// Where a ray meets a target.
 struct TargetHit {
-  Spot spot;
+  TargetSpot spot;
   double distance_mm = 0;  ///< from the ray's origin: of several targets the nearest is seen
 };
 
@@ -59,11 +59,11 @@ class Target {
   /// variance of the pixel's parallelogram along u and v, so that edges have their width and stay in place.
   /// Waves are too low to move where a ray meets the plane.
   std::optional<TargetHit> hit(const ViewRay& ray) const;
-  TargetPoint at(const Spot& spot) const;
+  TargetPoint at(const TargetSpot& spot) const;
 
   int ink_at(double u_mm, double v_mm) const { return pattern_.ink_at(u_mm, v_mm); }
   /// Mean albedo over the spot's box, for inks as inks_of() numbers them.
-  Rgb average(const Spot& spot, std::span<const Rgb> albedo_of_ink) const {
+  Rgb average(const TargetSpot& spot, std::span<const Rgb> albedo_of_ink) const {
     return pattern_.average(spot, albedo_of_ink);
   }
 

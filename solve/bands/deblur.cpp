@@ -48,7 +48,7 @@ Result<void> Deblur::hand_on(int end_row) {
     sharpened_ = Image<float>({size_.width, area.height()}, kSharpened);
   const Rect all = {0, 0, size_.width, area.height()};
   const MapBand held = held_.all();
-  const solver::SolvedRows rows = {
+  const solver::RowsToSharpen rows = {
       size_,      held.rows.y0, cfa_, held.normal, held.albedo, held.sigma_albedo, held.sigma_normal_deg,
       held.status};
   const solver::SharpenedRows out = {area.y0, three(sharpened_, kNormal, all),

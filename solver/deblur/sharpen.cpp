@@ -66,7 +66,7 @@ float sum_around(const float* at, std::ptrdiff_t stride) {
 // An area of the image on its way to being sharp, and as far around it as shares are measured.
 class Sharpening {
  public:
-  Sharpening(const SolvedRows& rows, const std::array<DeblurFilter, 3>& filters, Rect area)
+  Sharpening(const RowsToSharpen& rows, const std::array<DeblurFilter, 3>& filters, Rect area)
       : rows_(rows),
         filters_(filters),
         area_(area),
@@ -241,7 +241,7 @@ class Sharpening {
     });
   }
 
-  const SolvedRows& rows_;
+  const RowsToSharpen& rows_;
   const std::array<DeblurFilter, 3>& filters_;
   Rect area_, around_;
   std::vector<Part> filtered_;  // over around_: colours by components
@@ -250,7 +250,7 @@ class Sharpening {
 
 }  // namespace
 
-double sharpen(const SolvedRows& rows, const std::array<DeblurFilter, 3>& filters, Rect area,
+double sharpen(const RowsToSharpen& rows, const std::array<DeblurFilter, 3>& filters, Rect area,
                const SharpenedRows& out) {
   return Sharpening(rows, filters, area).write(out);
 }

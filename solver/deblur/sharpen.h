@@ -17,7 +17,7 @@ inline constexpr int kShareReach = 1;
 inline constexpr int kSharpenReach = kDeblurReach + kShareReach;
 
 /// Rows of solved maps, (0, 0) of each view being column 0 of the image's row `first_row`.
-struct SolvedRows {
+struct RowsToSharpen {
   Size image;
   int first_row = 0;
   std::optional<CfaPattern> cfa;  ///< of a mosaic: each normal was measured in its photosite's own colour
@@ -42,7 +42,7 @@ struct SharpenedRows {
 /// correction, measured around each pixel by how far it would turn the normals. A filter may look at what was
 /// measured in other colours: albedo is known in all of them. What has no solution stays as it is, with all
 /// that it would enter. Returns the sum of the shares over the area.
-double sharpen(const SolvedRows& rows, const std::array<DeblurFilter, 3>& filters, Rect area,
+double sharpen(const RowsToSharpen& rows, const std::array<DeblurFilter, 3>& filters, Rect area,
                const SharpenedRows& out);
 
 }  // namespace weft::solver

@@ -28,7 +28,7 @@ struct Weights {
 struct Neighbourhood {
   const float *here, *above, *below;
 
-  Neighbourhood(const Plane& h, int y) : here(h.row(y)), above(h.row(y - 1)), below(h.row(y + 1)) {}
+  Neighbourhood(const PaddedPlane& h, int y) : here(h.row(y)), above(h.row(y - 1)), below(h.row(y + 1)) {}
   float outflow(const Weights& w, int x) const {
     const float h = here[x];
     return (w.left[x] * (h - here[x - 1]) + w.left[x + 1] * (h - here[x + 1])) +
@@ -76,7 +76,7 @@ void add_between(const float* row, const float* beyond, const float* way, int wi
 
 // The rows of the finer level that draw on a row of cells, summed with their shares: the transpose of
 // add_between.
-void gather_rows(const Plane& fine, const Weights& w, int row, int width, float* __restrict out) {
+void gather_rows(const PaddedPlane& fine, const Weights& w, int row, int width, float* __restrict out) {
   const float *above = fine.row(2 * row - 1), *upper = fine.row(2 * row), *lower = fine.row(2 * row + 1),
               *below = fine.row(2 * row + 2);
   for (int x = 0; x < width; ++x) {
@@ -129,7 +129,7 @@ void relax_from_zero(GridLevel& level, float damping, int threads) {
   });
 }
 
-void apply_row(const GridLevel& level, const Plane& h, int y, float* __restrict out) {
+void apply_row(const GridLevel& level, const PaddedPlane& h, int y, float* __restrict out) {
   const Weights w(level, y);
   const Neighbourhood around(h, y);
   for (int x = 0; x < level.size().width; ++x) out[x] = around.outflow(w, x);

@@ -9,10 +9,10 @@ namespace weft::solver {
 
 /// A plane of floats with a frame of zeros, so that neighbours may be read without asking whether they are
 /// there.
-class Plane {
+class PaddedPlane {
  public:
-  Plane() = default;
-  explicit Plane(Size size) : image_({size.width + 3, size.height + 3}), view_(view_of(image_, size)) {}
+  PaddedPlane() = default;
+  explicit PaddedPlane(Size size) : image_({size.width + 3, size.height + 3}), view_(view_of(image_, size)) {}
   /// Row -1 <= y < height + 2, of which columns -1 <= x < width + 2 may be read.
   float* row(int y) { return view_.row(y); }
   const float* row(int y) const { return view_.row(y); }
@@ -34,8 +34,8 @@ struct GridLevel {
       : left_weight(size), upper_weight(size), source(size), height(size), scratch(size) {}
   Size size() const { return height.size(); }
 
-  Plane left_weight, upper_weight;  ///< towards the left and the upper neighbour; 0 where there is none
-  Plane source, height, scratch;
+  PaddedPlane left_weight, upper_weight;  ///< towards the left and the upper neighbour; 0 where there is none
+  PaddedPlane source, height, scratch;
 };
 
 /// Levels below `finest`, whose sizes are halved until one pixel is left. An edge there weighs half the sum
@@ -56,6 +56,6 @@ void restrict_residual(const GridLevel& fine, GridLevel& coarse, int threads);
 void add_from_coarse(const GridLevel& coarse, GridLevel& fine, int threads);
 
 /// What the heights `h` give at row y: sum of w (h(here) - h(there)).
-void apply_row(const GridLevel& level, const Plane& h, int y, float* out);
+void apply_row(const GridLevel& level, const PaddedPlane& h, int y, float* out);
 
 }  // namespace weft::solver

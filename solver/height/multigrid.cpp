@@ -47,7 +47,7 @@ void fill_finest(const Slopes& slopes, const SlopeSurvey& survey, GridLevel& lev
   });
 }
 
-double dot_of(const Plane& a, const Plane& b, int threads) {
+double dot_of(const PaddedPlane& a, const PaddedPlane& b, int threads) {
   return sum_over_bands(a.size().height, threads, [&](int y0, int y1) {
     double sum = 0;
     for (int y = y0; y < y1; ++y) {
@@ -59,7 +59,7 @@ double dot_of(const Plane& a, const Plane& b, int threads) {
 }
 
 // direction = height + keep * direction
-void turn(const GridLevel& level, double keep, Plane& direction, int threads) {
+void turn(const GridLevel& level, double keep, PaddedPlane& direction, int threads) {
   const auto factor = static_cast<float>(keep);
   for_each_band(level.size().height, threads, [&](int y0, int y1, int) {
     for (int y = y0; y < y1; ++y) {
@@ -71,14 +71,14 @@ void turn(const GridLevel& level, double keep, Plane& direction, int threads) {
 }
 
 // scratch = A direction
-void apply(GridLevel& level, const Plane& direction, int threads) {
+void apply(GridLevel& level, const PaddedPlane& direction, int threads) {
   for_each_band(level.size().height, threads, [&](int y0, int y1, int) {
     for (int y = y0; y < y1; ++y) apply_row(level, direction, y, level.scratch.row(y));
   });
 }
 
 // solution += step * direction, source -= step * scratch
-void advance(GridLevel& level, const Plane& direction, double step, View<float> solution, int threads) {
+void advance(GridLevel& level, const PaddedPlane& direction, double step, View<float> solution, int threads) {
   const auto factor = static_cast<float>(step);
   for_each_band(level.size().height, threads, [&](int y0, int y1, int) {
     for (int y = y0; y < y1; ++y) {
@@ -101,7 +101,7 @@ MultigridReport solve_weighted(const Slopes& slopes, const SlopeSurvey& survey, 
   fill_finest(slopes, survey, levels.front(), threads);
   add_coarser_levels(levels, threads);
   GridLevel& finest = levels.front();
-  Plane direction(slopes.size());
+  PaddedPlane direction(slopes.size());
   const double start = std::sqrt(dot_of(finest.source, finest.source, threads));
   if (start == 0) return {};
 

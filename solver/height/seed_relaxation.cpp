@@ -14,7 +14,7 @@ namespace {
 struct SlopeLevel {
   explicit SlopeLevel(Size size) : right(size), down(size), weight(size) {}
   Size size() const { return right.size(); }
-  Plane right, down, weight;
+  PaddedPlane right, down, weight;
 };
 
 SlopeLevel finest_slopes(const Slopes& slopes, const SlopeSurvey& survey, int threads) {
@@ -37,7 +37,7 @@ SlopeLevel finest_slopes(const Slopes& slopes, const SlopeSurvey& survey, int th
 
 SlopeLevel halved(const SlopeLevel& fine, int threads) {
   SlopeLevel level({(fine.size().width + 1) / 2, (fine.size().height + 1) / 2});
-  const auto sum_of_four = [](const Plane& p, int x, int y) {
+  const auto sum_of_four = [](const PaddedPlane& p, int x, int y) {
     const float *upper = p.row(2 * y) + 2 * x, *lower = p.row(2 * y + 1) + 2 * x;
     return (upper[0] + upper[1]) + (lower[0] + lower[1]);
   };

@@ -35,7 +35,7 @@ void solve_by_qr(const MatrixX3d& a, const VectorXd& x, Factor& f) {
   const Matrix3d r_inverse = r.triangularView<Eigen::Upper>().solve(Matrix3d::Identity());
   f.inverse = r_inverse * r_inverse.transpose();
   f.b = qr.solve(x);
-  f.path = SolvedBy::kQr;
+  f.path = EquationsSolvedBy::kQr;
 }
 
 void solve_by_svd(const Eigen::JacobiSVD<Eigen::MatrixXd>& svd, const VectorXd& x, Factor& f) {
@@ -43,7 +43,7 @@ void solve_by_svd(const Eigen::JacobiSVD<Eigen::MatrixXd>& svd, const VectorXd& 
   const Matrix3d v = svd.matrixV();
   f.b = v * inverse_sigma.cwiseProduct(Vector3d(svd.matrixU().transpose() * x));
   f.inverse = v * inverse_sigma.cwiseAbs2().asDiagonal() * v.transpose();
-  f.path = SolvedBy::kSvd;
+  f.path = EquationsSolvedBy::kSvd;
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ Factor factorise(std::span<const WeightedDirection> rows) {
     f.condition = condition;
     f.inverse = inverse;
     f.b = inverse * rhs;
-    f.path = SolvedBy::kNormalEquations;
+    f.path = EquationsSolvedBy::kNormalEquations;
     return f;
   }
 

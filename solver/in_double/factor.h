@@ -17,7 +17,7 @@ struct WeightedDirection {
 
 /// A solved system  min sum w (x - l . b)^2.
 struct Factor {
-  SolvedBy path = SolvedBy::kNothing;
+  EquationsSolvedBy path = EquationsSolvedBy::kNothing;
   double condition = 0;     ///< of the rows sqrt(w) l; infinity where their rank is below three
   Eigen::Matrix3d inverse;  ///< (A^T W A)^-1
   Eigen::Vector3d b;

@@ -139,7 +139,7 @@ struct PixelSolver::Work {
       if (r.use == Use::kFitted) system.push_back({r.l, 1 / r.variance, r.light});
     }
     fit = factorise(system);
-    const double solved = fit.path == SolvedBy::kNothing ? 0 : rho();
+    const double solved = fit.path == EquationsSolvedBy::kNothing ? 0 : rho();
     return solved > 0 && std::isfinite(solved);
   }
   void predict_variances() {
@@ -453,7 +453,7 @@ PixelSolution PixelSolver::solve(std::span<const PixelRow> rows) {
 PixelSolution PixelSolver::explain(std::span<const PixelRow> rows, std::span<ReadingStory> stories) {
   const PixelSolution solution = solve(rows);
   const Work& w = *work_;
-  const bool is_solved = solution.path != SolvedBy::kNothing;
+  const bool is_solved = solution.path != EquationsSolvedBy::kNothing;
   const Vector3d b = is_solved ? w.fit.b : Vector3d::Zero();
   const double model2 = std::pow(model_share(w.has_noise()) * b.norm(), 2);
   for (std::size_t k = 0; k < rows.size(); ++k) {

@@ -50,7 +50,7 @@ struct PixelOptions {
 };
 
 /// How a system of equations was solved, by its condition number.
-enum class SolvedBy { kNothing, kNormalEquations, kQr, kSvd };
+enum class EquationsSolvedBy { kNothing, kNormalEquations, kQr, kSvd };
 
 /// What TileOutput holds for one pixel.
 struct PixelSolution {
@@ -60,7 +60,7 @@ struct PixelSolution {
   std::array<double, 3> sigma_albedo = {};
   double residual = 0;
   std::uint16_t status = 0;
-  SolvedBy path = SolvedBy::kNothing;
+  EquationsSolvedBy path = EquationsSolvedBy::kNothing;
   int rejected = 0;  ///< readings left out because the others contradict them
 };
 

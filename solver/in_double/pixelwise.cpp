@@ -10,16 +10,16 @@ namespace {
 
 void count_pixel(const PixelSolution& s, SolveTally& tally) {
   switch (s.path) {
-    case SolvedBy::kNothing:
+    case EquationsSolvedBy::kNothing:
       ++tally.unsolved;
       break;
-    case SolvedBy::kNormalEquations:
+    case EquationsSolvedBy::kNormalEquations:
       ++tally.by_normal_equations;
       break;
-    case SolvedBy::kQr:
+    case EquationsSolvedBy::kQr:
       ++tally.by_qr;
       break;
-    case SolvedBy::kSvd:
+    case EquationsSolvedBy::kSvd:
       ++tally.by_svd;
       break;
   }

@@ -18,14 +18,14 @@ constexpr double kRing_deg = 7, kAlongRing_deg = 12;
 constexpr std::size_t kMoveStride = 2;
 constexpr double kFirstStep_deg = 4, kLastStep_deg = 1;
 
-bool is_free(const PlannedRig& rig, LedPlace place) {
+bool is_free(const ForeseenRig& rig, LedPlace place) {
   const Vec3 middle = rig.places_mm.front(), l = led_at(rig, place).position_mm - middle;
   return std::ranges::none_of(
       rig.leds, [&](const NearLight& led) { return angle_deg(led.position_mm - middle, l) < kApart_deg; });
 }
 
 // The first of the best.
-std::optional<TriedPlace> best_of(const std::vector<TriedPlace>& tried, const Lobe& lobe, PlanAim aim) {
+std::optional<TriedPlace> best_of(const std::vector<TriedPlace>& tried, const Lobe& lobe, LightAim aim) {
   std::optional<TriedPlace> best;
   double least = std::numeric_limits<double>::infinity();
   for (const TriedPlace& each : tried) {
@@ -38,7 +38,7 @@ std::optional<TriedPlace> best_of(const std::vector<TriedPlace>& tried, const Lo
 }
 
 // Those around a place, a step away, that are free.
-std::vector<LedPlace> around(const PlannedRig& rig, LedPlace place, double step_deg) {
+std::vector<LedPlace> around(const ForeseenRig& rig, LedPlace place, double step_deg) {
   std::vector<LedPlace> places;
   const double along = step_deg / std::sin(radians(place.from_camera_deg));
   for (const double out : {-step_deg, 0.0, step_deg}) {
@@ -63,15 +63,15 @@ Result<void> for_places(std::size_t count, const JobContext& context,
 
 }  // namespace
 
-double badness(const PlannedSigma& sigma, const Lobe& lobe, PlanAim aim) {
+double badness(const ForeseenSigma& sigma, const Lobe& lobe, LightAim aim) {
   const double normal = std::log(sigma.normal_deg) + std::log1p(sigma.unsolved);
-  if (aim == PlanAim::kNormal) return normal;
-  if (aim == PlanAim::kAlpha) return std::log(sigma.alpha);
-  if (aim == PlanAim::kF0) return std::log(sigma.f0);
+  if (aim == LightAim::kNormal) return normal;
+  if (aim == LightAim::kAlpha) return std::log(sigma.alpha);
+  if (aim == LightAim::kF0) return std::log(sigma.f0);
   return lobe.shines() ? normal + std::log(sigma.alpha) + std::log(sigma.f0) : normal;
 }
 
-std::vector<LedPlace> free_places(const PlannedRig& rig) {
+std::vector<LedPlace> free_places(const ForeseenRig& rig) {
   std::vector<LedPlace> places;
   for (double from_camera = kNearestPlace_deg; from_camera <= kFarthestPlace_deg; from_camera += kRing_deg) {
     const double around = 360 * std::sin(radians(from_camera)) / kAlongRing_deg;
@@ -97,7 +97,7 @@ Result<std::vector<TriedPlace>> try_places(const LightPlan& plan, const LightSet
 }
 
 Result<std::optional<TriedPlace>> best_place(const LightPlan& plan, const LightSet& lights,
-                                             const std::vector<TriedPlace>& tried, PlanAim aim,
+                                             const std::vector<TriedPlace>& tried, LightAim aim,
                                              const JobContext& context) {
   const Lobe& lobe = plan.cloth().lobe;
   std::optional<TriedPlace> best = best_of(tried, lobe, aim);
@@ -112,9 +112,9 @@ Result<std::optional<TriedPlace>> best_place(const LightPlan& plan, const LightS
 }
 
 Result<std::optional<TriedPlace>> best_move(const LightPlan& plan, const std::vector<LedPlace>& places,
-                                            PlanAim aim, const JobContext& context) {
+                                            LightAim aim, const JobContext& context) {
   const std::size_t count = (places.size() + kMoveStride - 1) / kMoveStride;
-  std::vector<std::vector<PlannedSigma>> by_place(count);
+  std::vector<std::vector<ForeseenSigma>> by_place(count);
   const Result<void> done = for_places(count, context, [&](std::size_t i) {
     by_place[i] = plan.moved_to(led_at(plan.rig(), places[kMoveStride * i]));
   });

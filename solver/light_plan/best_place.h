@@ -13,11 +13,11 @@
 namespace weft::solver {
 
 /// What is to be known as closely as possible. kAll: the product of the three.
-enum class PlanAim { kAll, kNormal, kAlpha, kF0 };
+enum class LightAim { kAll, kNormal, kAlpha, kF0 };
 inline constexpr std::array<const char*, 4> kPlanAimNames = {"all", "normal", "alpha", "f0"};
 
 /// The log of what is aimed at: less is better; infinite where it is not told.
-double badness(const PlannedSigma& sigma, const Lobe& lobe, PlanAim aim);
+double badness(const ForeseenSigma& sigma, const Lobe& lobe, LightAim aim);
 
 /// Where a LED may stand: nearer to the camera's axis it would be before the lens. Further off it would light
 /// the tops of yarns alone; such shadows are not in a plan.
@@ -27,12 +27,12 @@ inline constexpr double kApart_deg = 4;
 
 struct TriedPlace {
   LedPlace place;
-  PlannedSigma sigma;
+  ForeseenSigma sigma;
   std::optional<std::size_t> moved = {};  ///< LED of the rig that was taken away, from 0
 };
 
 /// Rings of places every seven degrees, but those where a LED stands.
-std::vector<LedPlace> free_places(const PlannedRig& rig);
+std::vector<LedPlace> free_places(const ForeseenRig& rig);
 
 /// One more LED in each of these places, beside all that there are.
 Result<std::vector<TriedPlace>> try_places(const LightPlan& plan, const LightSet& lights,
@@ -40,11 +40,11 @@ Result<std::vector<TriedPlace>> try_places(const LightPlan& plan, const LightSet
 
 /// The best of `tried`, moved on by steps down to a degree. None where none tells the aim.
 Result<std::optional<TriedPlace>> best_place(const LightPlan& plan, const LightSet& lights,
-                                             const std::vector<TriedPlace>& tried, PlanAim aim,
+                                             const std::vector<TriedPlace>& tried, LightAim aim,
                                              const JobContext& context);
 
 /// The best place for one of the LEDs that there are. None where none tells the aim.
 Result<std::optional<TriedPlace>> best_move(const LightPlan& plan, const std::vector<LedPlace>& places,
-                                            PlanAim aim, const JobContext& context);
+                                            LightAim aim, const JobContext& context);
 
 }  // namespace weft::solver

@@ -92,7 +92,7 @@ Lobe moved(Lobe lobe, Eigen::Index parameter, double step) {
 // One LED over all sites.
 class LightedSites {
  public:
-  LightedSites(const PlannedRig& rig, const PlannedCloth& cloth, const NearLight& led)
+  LightedSites(const ForeseenRig& rig, const ForeseenCloth& cloth, const NearLight& led)
       : rig_(rig), cloth_(cloth), led_(led), to_led_(led.position_mm - rig.places_mm.front()) {}
 
   LitSites over(const std::vector<ClothSite>& sites) const {
@@ -139,8 +139,8 @@ class LightedSites {
     return lit;
   }
 
-  const PlannedRig& rig_;
-  const PlannedCloth& cloth_;
+  const ForeseenRig& rig_;
+  const ForeseenCloth& cloth_;
   const NearLight& led_;
   Vec3 to_led_;
 };
@@ -164,7 +164,7 @@ struct Pixel {
 // The lights of one scan over the cloth.
 class Scan {
  public:
-  Scan(const PlannedRig& rig, const PlannedCloth& cloth, const std::vector<ClothSite>& sites,
+  Scan(const ForeseenRig& rig, const ForeseenCloth& cloth, const std::vector<ClothSite>& sites,
        std::vector<const LitSites*> lights, bool has_polarisers)
       : rig_(rig),
         cloth_(cloth),
@@ -184,7 +184,7 @@ class Scan {
   }
 
   // `led_covariance` is of its lights, in their order.
-  PlannedSigma sigma(const Eigen::MatrixXd& led_covariance, RigErrors errors) const {
+  ForeseenSigma sigma(const Eigen::MatrixXd& led_covariance, RigErrors errors) const {
     const Eigen::Index leds = shared_ - kBeforeLeds;
     Eigen::MatrixXd rig = Eigen::MatrixXd::Zero(leds + 1, leds + 1);
     rig(0, 0) = kKnownStray * kKnownStray;
@@ -195,7 +195,7 @@ class Scan {
     const Eigen::MatrixXd covariance =
         errors == RigErrors::kFitted ? fitted_with(rig, all) : taken_with(rig, all);
     if (!covariance.allFinite()) return nothing();
-    PlannedSigma sigma;
+    ForeseenSigma sigma;
     say_lobe(covariance, sigma);
     say_normals(covariance, sigma);
     return sigma;
@@ -204,8 +204,8 @@ class Scan {
  private:
   bool is_fitted(Eigen::Index p) const { return fitted_[static_cast<std::size_t>(p)]; }
 
-  static PlannedSigma nothing() {
-    PlannedSigma sigma;
+  static ForeseenSigma nothing() {
+    ForeseenSigma sigma;
     sigma.normal_deg = sigma.alpha = sigma.f0 = sigma.alpha_along = sigma.axis_deg = kNever;
     sigma.unsolved = 1;
     return sigma;
@@ -324,7 +324,7 @@ class Scan {
     pixels_.push_back(pixel);
   }
 
-  void say_lobe(const Eigen::MatrixXd& c, PlannedSigma& sigma) const {
+  void say_lobe(const Eigen::MatrixXd& c, ForeseenSigma& sigma) const {
     const Lobe& lobe = cloth_.lobe;
     const auto root = [&](Eigen::Index p) {
       const double one = std::sqrt(c(p, p));
@@ -347,7 +347,7 @@ class Scan {
                           sigma.correlation > kTailOnly;
   }
 
-  void say_normals(const Eigen::MatrixXd& covariance, PlannedSigma& sigma) const {
+  void say_normals(const Eigen::MatrixXd& covariance, ForeseenSigma& sigma) const {
     double sum = 0, solved = 0;
     const Eigen::MatrixXd left = covariance * mixed_;
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
@@ -362,8 +362,8 @@ class Scan {
     sigma.normal_deg = sigma.unsolved < kMostUnsolved ? sum / solved : kNever;
   }
 
-  const PlannedRig& rig_;
-  const PlannedCloth& cloth_;
+  const ForeseenRig& rig_;
+  const ForeseenCloth& cloth_;
   const std::vector<ClothSite>& sites_;
   std::vector<const LitSites*> lights_;
   const std::vector<Film>& films_;
@@ -378,7 +378,7 @@ class Scan {
 }  // namespace
 
 // By Rayleigh's quantiles, each turned by the golden angle.
-std::vector<ClothSite> sites_of(const PlannedRig& rig, const PlannedCloth& cloth) {
+std::vector<ClothSite> sites_of(const ForeseenRig& rig, const ForeseenCloth& cloth) {
   const double rms = std::tan(radians(cloth.relief_deg / kMeanOfRms));
   std::vector<ClothSite> sites;
   for (const Vec3 place : rig.places_mm) {
@@ -396,12 +396,12 @@ std::vector<ClothSite> sites_of(const PlannedRig& rig, const PlannedCloth& cloth
 }
 
 struct LightPlan::Parts {
-  PlannedRig rig;
-  PlannedCloth cloth;
+  ForeseenRig rig;
+  ForeseenCloth cloth;
   std::vector<ClothSite> sites;
   std::vector<LitSites> lit;  // by LED of the rig
 
-  PlannedSigma sigma_of(const LightSet& set, const LitSites* added) const {
+  ForeseenSigma sigma_of(const LightSet& set, const LitSites* added) const {
     std::vector<const LitSites*> lights;
     for (const std::size_t k : set.leds) lights.push_back(&lit[k]);
     if (added) lights.push_back(added);
@@ -432,7 +432,7 @@ struct LightPlan::Parts {
   LitSites lit_by(const NearLight& led) const { return LightedSites(rig, cloth, led).over(sites); }
 };
 
-LightPlan::LightPlan(PlannedRig rig, PlannedCloth cloth) {
+LightPlan::LightPlan(ForeseenRig rig, ForeseenCloth cloth) {
   auto parts = std::make_unique<Parts>();
   parts->rig = std::move(rig);
   parts->cloth = cloth;
@@ -444,11 +444,11 @@ LightPlan::LightPlan(PlannedRig rig, PlannedCloth cloth) {
 LightPlan::~LightPlan() = default;
 LightPlan::LightPlan(LightPlan&&) noexcept = default;
 
-const PlannedRig& LightPlan::rig() const {
+const ForeseenRig& LightPlan::rig() const {
   return parts_->rig;
 }
 
-const PlannedCloth& LightPlan::cloth() const {
+const ForeseenCloth& LightPlan::cloth() const {
   return parts_->cloth;
 }
 
@@ -459,15 +459,15 @@ LightSet LightPlan::as_it_is() const {
   return set;
 }
 
-PlannedSigma LightPlan::sigma_of(const LightSet& lights) const {
+ForeseenSigma LightPlan::sigma_of(const LightSet& lights) const {
   if (!lights.added) return parts_->sigma_of(lights, nullptr);
   const LitSites added = parts_->lit_by(*lights.added);
   return parts_->sigma_of(lights, &added);
 }
 
-std::vector<PlannedSigma> LightPlan::moved_to(const NearLight& place) const {
+std::vector<ForeseenSigma> LightPlan::moved_to(const NearLight& place) const {
   const LitSites added = parts_->lit_by(place);
-  std::vector<PlannedSigma> sigmas;
+  std::vector<ForeseenSigma> sigmas;
   for (std::size_t k = 0; k < parts_->rig.leds.size(); ++k) {
     LightSet set = as_it_is();
     set.leds.erase(set.leds.begin() + static_cast<std::ptrdiff_t>(k));

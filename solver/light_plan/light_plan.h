@@ -15,7 +15,7 @@
 namespace weft::solver {
 
 /// A cloth of one material.
-struct PlannedCloth {
+struct ForeseenCloth {
   Lobe lobe;
   double albedo = 0.3;
   double relief_deg = 20;  ///< mean slope; 0: level
@@ -29,7 +29,7 @@ struct ClothSite {
   double yarn = 0;  ///< azimuth from the lobe's axis, radians
 };
 /// Gaussian slopes in each place of the rig: the same for the same cloth.
-std::vector<ClothSite> sites_of(const PlannedRig& rig, const PlannedCloth& cloth);
+std::vector<ClothSite> sites_of(const ForeseenRig& rig, const ForeseenCloth& cloth);
 
 /// What is made of the rig's errors.
 enum class RigErrors {
@@ -47,7 +47,7 @@ struct LightSet {
 
 /// Standard deviations. Infinite: the photographs do not tell it. With RigErrors::kFitted no unbiased
 /// estimate beats them (Rao 1945, Cramer 1946).
-struct PlannedSigma {
+struct ForeseenSigma {
   double normal_deg = 0;       ///< rms angle of a pixel's normal, mean over pixels that have one
   double alpha = 0, f0 = 0;    ///< of a lobe; of a cloth lobe f0 is the strength of its sheen
   double alpha_along = 0;      ///< of a lobe with two roughnesses
@@ -63,17 +63,17 @@ struct PlannedSigma {
 /// within what is known of them.
 class LightPlan {
  public:
-  LightPlan(PlannedRig rig, PlannedCloth cloth);
+  LightPlan(ForeseenRig rig, ForeseenCloth cloth);
   ~LightPlan();
   LightPlan(LightPlan&&) noexcept;
 
-  const PlannedRig& rig() const;
-  const PlannedCloth& cloth() const;
+  const ForeseenRig& rig() const;
+  const ForeseenCloth& cloth() const;
   LightSet as_it_is() const;
   /// May be called from any thread.
-  PlannedSigma sigma_of(const LightSet& lights) const;
+  ForeseenSigma sigma_of(const LightSet& lights) const;
   /// Of all LEDs, with each in turn taken from where it is to this place. May be called from any thread.
-  std::vector<PlannedSigma> moved_to(const NearLight& place) const;
+  std::vector<ForeseenSigma> moved_to(const NearLight& place) const;
 
  private:
   struct Parts;

@@ -66,7 +66,7 @@ std::vector<double> values_of(const ByRows& matrix) {
 }
 
 // Directions of the camera's axis, of azimuth 0 and of azimuth 90 degrees.
-std::array<Vec3, 3> axes_of(const PlannedRig& rig) {
+std::array<Vec3, 3> axes_of(const ForeseenRig& rig) {
   const Vec3 up = normalized(rig.camera_mm - rig.places_mm.front());
   const Vec3 aside = std::abs(up.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 x = normalized(aside - dot(aside, up) * up);
@@ -121,7 +121,7 @@ Result<std::vector<double>> led_covariance_of(const std::vector<NearLight>& leds
   return values_of(all);
 }
 
-LedPlace place_of(const PlannedRig& rig, Vec3 position_mm) {
+LedPlace place_of(const ForeseenRig& rig, Vec3 position_mm) {
   const auto [up, x, y] = axes_of(rig);
   const Vec3 l = position_mm - rig.places_mm.front();
   double azimuth = degrees(std::atan2(dot(l, y), dot(l, x)));
@@ -129,7 +129,7 @@ LedPlace place_of(const PlannedRig& rig, Vec3 position_mm) {
   return {angle_deg(l, up), azimuth};
 }
 
-NearLight led_at(const PlannedRig& rig, LedPlace place) {
+NearLight led_at(const ForeseenRig& rig, LedPlace place) {
   const Vec3 middle = rig.places_mm.front();
   std::vector<double> distances, mus, fluxes;
   for (const NearLight& led : rig.leds) {

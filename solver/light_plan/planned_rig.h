@@ -12,7 +12,7 @@
 namespace weft::solver {
 
 /// What a rig is for somebody who thinks about its lights. Gains over the frame are not used.
-struct PlannedRig {
+struct ForeseenRig {
   std::vector<NearLight> leds;
   Vec3 camera_mm = {0, 0, 600};
   std::vector<Vec3> places_mm = {{0, 0, 0}};  ///< of the cloth, over the frame; the first is its middle
@@ -48,8 +48,8 @@ struct LedPlace {
 
   friend bool operator==(const LedPlace&, const LedPlace&) = default;
 };
-LedPlace place_of(const PlannedRig& rig, Vec3 position_mm);
+LedPlace place_of(const ForeseenRig& rig, Vec3 position_mm);
 /// A LED there: as far off as the rig's are, as bright and with their lobe (medians), aimed at the middle.
-NearLight led_at(const PlannedRig& rig, LedPlace place);
+NearLight led_at(const ForeseenRig& rig, LedPlace place);
 
 }  // namespace weft::solver

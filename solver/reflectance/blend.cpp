@@ -8,10 +8,12 @@
 namespace weft::solver {
 namespace {
 
+// Steps from one start, and how often one that wins nothing is halved.
 constexpr int kJointSteps = 8, kJointHalvings = 4;
-constexpr double kMostTurn = 0.3;  // of b
-constexpr double kMostShareStep = 0.3;
-constexpr double kJointSettled = 1e-4;  // of the cost: a step that wins less is the last
+// The longest step, of b over its length and of the share: farther off the slopes say nothing.
+constexpr double kMostTurn = 0.3, kMostShareStep = 0.3;
+// A step that wins less of the cost is the last.
+constexpr double kJointSettled = 1e-4;
 
 double huber_cost(double residual, double weight) {
   const double size = std::abs(residual) * std::sqrt(weight);

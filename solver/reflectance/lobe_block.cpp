@@ -18,6 +18,7 @@ namespace weft::solver {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+// As in pixel_fit.cpp, whose lanes these are.
 constexpr float kMostStep = 0.3F;
 constexpr int kMostHalvings = 4;
 // Evaluations from one start, in rounds between which yarns and starts are compared.

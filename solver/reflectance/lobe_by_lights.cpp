@@ -10,6 +10,7 @@
 namespace weft::solver {
 namespace {
 
+// Pixels of the sample that stand for all.
 constexpr std::size_t kMostPixels = 1000;
 // Step of a light's direction that slopes are taken from.
 constexpr double kLightTurn = 1e-5;

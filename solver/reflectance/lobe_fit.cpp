@@ -18,7 +18,9 @@ using SharedMatrix = Eigen::Matrix<double, kLobeParameters, kLobeParameters>;
 
 // Pixels whose sums are made by one thread, in their order.
 constexpr std::size_t kChunk = 64;
+// Dampings of one step, each eight times the one before; where the last wins nothing the fit is over.
 constexpr int kMostTries = 7;
+// What pixels need to follow a lobe that moved a little.
 constexpr int kStepsARound = 2;
 // Of a principal axis: what is less is an error of rounding.
 constexpr double kLeastVariance = 1e-14;

@@ -29,6 +29,7 @@ struct LobePart {
 /// they may do otherwise elsewhere.
 std::vector<LobePart> measure_parts(const LobeSamples& samples, const LobeFit& fit,
                                     std::span<const std::size_t> part, double sigma_alpha, int threads);
+/// A quarter with fewer says nothing.
 inline constexpr std::size_t kLeastPartPixels = 100;
 
 /// The smoothest and the roughest part, where they differ by more than kChangeSigmas of what is known of

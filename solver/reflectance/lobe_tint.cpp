@@ -20,8 +20,11 @@ namespace {
 constexpr std::size_t kMostTintPixels = 1500, kMostJudgedPixels = 400;
 // A reading less than a normal and an albedo have unknowns leaves nothing for f0.
 constexpr int kLeastTintReadings = 4;
-constexpr int kTintRounds = 4, kJudgeSteps = 5;
+// Rounds of pixels and tint in turn; they end where no channel moves by more than the second.
+constexpr int kTintRounds = 4;
 constexpr double kSettledTint = 0.003;
+// Steps of a pixel that light is left out of, from where all lights had it.
+constexpr int kJudgeSteps = 5;
 // Of a tinted lobe: where two materials mirror in two colours one that fits neither is better than none.
 constexpr double kMostTintedChi2 = 4;
 // Pixels of green that tell whether it is worth more, the chi2 from which it is anyway, and what it must win.
@@ -37,6 +40,7 @@ constexpr std::array<LobeParameter, 4> kForm = {LobeParameter::kLogAlpha, LobePa
                                                 LobeParameter::kAxis, LobeParameter::kBend};
 // Of the albedo of all channels where a channel seems to have none.
 constexpr double kLeastChannel = 1e-3;
+// The form and a tint for each channel.
 constexpr int kTintValues = static_cast<int>(kForm.size()) + 3;
 using TintVector = Eigen::Matrix<double, kTintValues, 1>;
 using TintMatrix = Eigen::Matrix<double, kTintValues, kTintValues>;

@@ -54,8 +54,9 @@ bool is_off(const LobeTint& tint);
 void find_tints(const LobeSamples& samples, const std::vector<Vec3>& start, const ChannelSamples& channels,
                 const TintOptions& options, std::vector<MeasuredLobe>& lobes);
 
+/// A channel with fewer leaves a lobe without a tint.
 inline constexpr std::size_t kLeastTintPixels = 100;
-inline constexpr double kTintSigmas = 3;
+inline constexpr double kTintSigmas = 3;  ///< of is_off()
 /// Of a ratio: light between yarns and what no family has are not the same in light and dark channels.
 inline constexpr double kTintModelShare = 0.04;
 /// How much bluer or redder a LED may be than calibrated, a share of each channel.

@@ -16,6 +16,7 @@ namespace {
 
 // Pixels of the sample that tell whether a split is worth more.
 constexpr std::size_t kSplitPixels = 800, kLeastTrialPixels = 60;
+// Rounds of fitting two lobes and of telling which pixel is of which.
 constexpr int kMostRounds = 6;
 // Of the cost of one lobe for all: a first split that saves less leads nowhere.
 constexpr double kPromising = 0.7;

@@ -18,21 +18,23 @@ constexpr std::array<const char*, 9> kRefusals = {"measured",     "too-few-pixel
                                                   "bent-diffuse", "too-narrow",     "uncertain"};
 // Pixels of the sample that decide among starts.
 constexpr std::size_t kTrialPixels = 1000;
+// Where fits begin: from a polished surface to a felt, and across the yarn of an anisotropic lobe.
 constexpr std::array<double, 4> kStartAlphas = {0.08, 0.2, 0.45, 0.8};
 constexpr std::array<double, 2> kStartAcross = {0.2, 0.5};
+// f0 of a fibre, and a yarn's alpha along it over that across.
 constexpr double kStartF0 = 0.03, kStartAlong = 0.3;
 // Alpha of a sharp and of a broad lobe, over that of one, and f0 of both.
 constexpr std::array<std::array<double, 2>, 3> kStartTwo = {{{0.8, 2}, {0.7, 4}, {0.9, 3}}};
-constexpr double kStartTwoF0 = 1.4, kStartShare = 0.4;
-constexpr std::size_t kStartPixels = 300;
+constexpr double kStartTwoF0 = 1.4, kStartShare = 0.4;  // f0 over that of one; share of the broad lobe
+constexpr std::size_t kStartPixels = 300;               // that two lobes are first tried on
 // Where GGX costs so many times what another family does two lobes of it are not what is missing.
 constexpr double kFarFromGgx = 3;
-constexpr int kRounds = 15;
-constexpr int kMostRestarts = 4, kYarnRounds = 3;
+// Rounds of one fit; fits from where pixels found other valleys; rounds of a fit and the yarns' sides.
+constexpr int kRounds = 15, kMostRestarts = 4, kYarnRounds = 3;
 constexpr double kMovedShare = 0.002;  // pixels that still find another valley
 constexpr double kMovedCost = 0.5;     // what a pixel must win to count as moved
 constexpr double kUndecided = 0.05;    // of the cost
-constexpr int kStartSteps = 5;
+constexpr int kStartSteps = 5;         // of a pixel, from another start
 
 bool has_yarn(const Lobe& lobe) {
   return lobe.family == LobeFamily::kAnisotropicGgx;

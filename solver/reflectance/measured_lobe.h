@@ -69,14 +69,17 @@ struct MeasuredLobe {
   bool is_measured() const { return refusal == LobeRefusal::kNone; }
 };
 
+/// Below it a lobe is refused as kTooFewPixels.
 inline constexpr std::size_t kLeastLobePixels = 300;
 /// Fewer say little of a lobe once normal and albedo are taken from them.
 inline constexpr int kLeastLobeReadings = 6;
+/// What a plot of a lobe shows.
 inline constexpr std::size_t kMostLobePoints = 400;
 /// A Lambert fit up to this chi2 leaves nothing for a lobe.
 inline constexpr double kLambertFitsTo = 1.5;
 /// A lobe's chi2 is at most this, or at most kLeastWon of Lambert's.
 inline constexpr double kLobeFitsTo = 1.5, kLeastWon = 0.15;
+/// What the lobe of a cloth may be; one outside is refused.
 inline constexpr double kLeastF0 = 0.015, kMostF0 = 0.15, kLeastAlpha = 0.025, kMostAlpha = 0.85;
 /// Where the scale of the albedo is relative f0 is held against the albedo: some cloth from this dark to this
 /// bright has both.

@@ -7,7 +7,9 @@
 namespace weft::solver {
 namespace {
 
+// The longest step over the length of b: a lobe turns so much over it that slopes say nothing beyond.
 constexpr double kMostStep = 0.3;
+// How often a step that wins nothing is halved; after that the pixel is where it can get.
 constexpr int kMostHalvings = 4;
 constexpr double kLeastFall = 1e-9;  // of the cost: a step that wins less is the last
 

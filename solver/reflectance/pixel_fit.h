@@ -22,7 +22,7 @@ int used_of(std::span<const LobeReading> readings);
 /// What no noise model knows, as a share of a reading, which counts as kLeastModelled at least. Without it
 /// a lobe would follow the best-lit pixels alone.
 inline constexpr double kLobeModelShare = 0.01;
-inline constexpr double kLeastModelled = 0.02;
+inline constexpr double kLeastModelled = 0.02;  ///< darker readings count as this bright
 /// A residual counts as a square up to so many sigma, beyond as its size (Huber 1964).
 inline constexpr double kHuberSigmas = 3;
 

@@ -32,13 +32,13 @@ Vec3 normal_at(const Rendering& r, int x, int y) {
 
 /// Counts of one shot, before they are rounded, of a tile at the centre.
 std::vector<double> samples_of(const Scene& scene, int led) {
-  const Plan plan = *plan_of(scene);
+  const SimulationPlan plan = *plan_of(scene);
   PassList list = *build_passes(plan.scene, plan.rig, Output::kCounts);
   list.passes.pop_back();  // the converter
   std::vector<double> samples;
   PassRunner runner(std::move(list), {512, 32, 1});
   EXPECT_TRUE(runner.run(
-      kCentre, {&led, 1}, {}, [](const Tile&) {}, [&](const Tile& tile) { samples = tile.samples; }));
+      kCentre, {&led, 1}, {}, [](const PassTile&) {}, [&](const PassTile& tile) { samples = tile.samples; }));
   return samples;
 }
 

@@ -131,9 +131,9 @@ TEST(HardCase01ClosingUpLights, AreSolvedInDoubleByTheFactorisationThatTheyAskFo
       EXPECT_LT(angle_deg(ours.normal, exact.normal), 1e-4);
       EXPECT_NEAR(ours.albedo[0] / exact.albedo, 1, 1e-6);
       EXPECT_EQ((ours.status & kIllConditioned) != 0, exact.condition >= kIllConditionedFrom);
-      EXPECT_EQ(ours.path == solver::SolvedBy::kSvd, exact.condition >= kIllConditionedFrom);
+      EXPECT_EQ(ours.path == solver::EquationsSolvedBy::kSvd, exact.condition >= kIllConditionedFrom);
       if (exact.condition > 1.5 * solver::kDoubleCondition) {
-        EXPECT_NE(ours.path, solver::SolvedBy::kNormalEquations);
+        EXPECT_NE(ours.path, solver::EquationsSolvedBy::kNormalEquations);
       }
     }
   }

@@ -239,7 +239,7 @@ TEST(MergedBlocks, ReachAllEdgesOfTheFrame) {
   const Size size = {4928, 3264};
   SheetCaptures all;
   SheetCapture& capture = all.captures.emplace_back();
-  calibration::BlockGrid& grid = capture.leds.emplace_back(size, all.block_px);
+  calibration::SheetBlockGrid& grid = capture.leds.emplace_back(size, all.block_px);
   for (calibration::BlockMean& block : grid.blocks) block.reading = 1;
   all.columns = grid.columns;
   all.rows = grid.rows;

@@ -32,8 +32,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using simulator::EffectSettings;
-using simulator::Plan;
 using simulator::Scene;
+using simulator::SimulationPlan;
 
 // Part of a cache folder's name: raised whenever the same scene gives other planes.
 constexpr int kVersion = 1;
@@ -95,7 +95,7 @@ Scene only_light(Scene scene) {
 /// The planes of a file under construction.
 class Planes {
  public:
-  Planes(const Plan& plan, float* data) : plan_(plan), data_(data), size_(plan.rig.camera.size) {}
+  Planes(const SimulationPlan& plan, float* data) : plan_(plan), data_(data), size_(plan.rig.camera.size) {}
 
   Result<void> render(const RenderLightOptions& options) const {
     const Scene light = only_light(plan_.scene);
@@ -122,8 +122,8 @@ class Planes {
       const Rect band = {0, y0, size_.width, std::min(y0 + kBandRows, size_.height)};
       const auto run = [&](simulator::PassRunner& runner, const std::vector<int>& which) {
         return runner.run(
-            band, which, options.stop, [](const simulator::Tile&) {},
-            [&](const simulator::Tile& t) {
+            band, which, options.stop, [](const simulator::PassTile&) {},
+            [&](const simulator::PassTile& t) {
               put(t);
               count(t.rect.pixels());
             });
@@ -155,7 +155,7 @@ class Planes {
   }
 
   /// What the filter of each photosite passes, per second at ISO 100.
-  void put(const simulator::Tile& tile) const {
+  void put(const simulator::PassTile& tile) const {
     constexpr CfaPattern kCfa;
     const double exposure = plan_.rig.exposure(plan_.scene.camera.iso);
     const int plane = tile.shot == 0 ? static_cast<int>(plan_.rig.leds.leds.size()) : tile.shot - 1;
@@ -165,7 +165,7 @@ class Planes {
     });
   }
 
-  const Plan& plan_;
+  const SimulationPlan& plan_;
   float* data_;
   Size size_;
 };
@@ -210,7 +210,7 @@ Result<MappedFloats> MappedFloats::make(const fs::path& file, std::size_t count)
 
 Result<LightFrames> LightFrames::open(const Scene& scene, const fs::path& cache,
                                       const RenderLightOptions& options) {
-  Result<Plan> plan = plan_of(scene);
+  Result<SimulationPlan> plan = plan_of(scene);
   if (!plan) return plan.error();
   const std::string name = name_of(plan->scene);
   LightFrames frames(std::move(*plan), cache / name);

@@ -81,7 +81,7 @@ class LightFrames {
   std::vector<std::string> left_out() const;
 
  private:
-  LightFrames(simulator::Plan plan, std::filesystem::path folder)
+  LightFrames(simulator::SimulationPlan plan, std::filesystem::path folder)
       : plan_(std::move(plan)), folder_(std::move(folder)) {}
   int planes() const { return leds() + 1 + (has_photosites() ? 3 : 0); }
   View<const float> plane(int number) const;
@@ -89,7 +89,7 @@ class LightFrames {
   Result<void> map();
   Result<void> render(const RenderLightOptions& options) const;
 
-  simulator::Plan plan_;
+  simulator::SimulationPlan plan_;
   std::filesystem::path folder_;
   MappedFloats file_;
 };

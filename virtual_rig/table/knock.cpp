@@ -15,7 +15,7 @@ namespace {
 
 using simulator::PoseSettings;
 
-constexpr Setting kAlongX = {"x", -1000, 1000, 0}, kAlongY = {"y", -1000, 1000, 0},
+constexpr Sayable kAlongX = {"x", -1000, 1000, 0}, kAlongY = {"y", -1000, 1000, 0},
                   kAlongZ = {"z", -1000, 1000, 0}, kTurned = {"turn", -45, 45, 0},
                   kTilted = {"tilt", 0, 45, 0}, kTowards = {"azimuth", -360, 360, 0};
 
@@ -25,7 +25,7 @@ Error not_knocked(const std::string& word, const std::string& why) {
 }
 
 Result<void> knock_camera(Knocks& knocks, const std::vector<std::string>& of_it) {
-  const Result<Said> said = Said::of(of_it, {kAlongX, kAlongY, kTurned, kTilted, kTowards});
+  const Result<SaidValues> said = SaidValues::of(of_it, {kAlongX, kAlongY, kTurned, kTilted, kTowards});
   if (!said) return said.error();
   knocks.camera = {.tilt_deg = (*said)(kTilted),
                    .azimuth_deg = (*said)(kTowards),
@@ -41,7 +41,8 @@ Result<void> knock_led(Knocks& knocks, const std::vector<std::string>& words, in
   const auto [end, wrong] = std::from_chars(word.data(), word.data() + word.size(), led);
   if (wrong != std::errc() || end != word.data() + word.size() || led < 1 || led > leds)
     return not_knocked(word, fmt::format("LEDs are 1 to {}", leds));
-  const Result<Said> said = Said::of({words.begin() + 2, words.end()}, {kAlongX, kAlongY, kAlongZ});
+  const Result<SaidValues> said =
+      SaidValues::of({words.begin() + 2, words.end()}, {kAlongX, kAlongY, kAlongZ});
   if (!said) return said.error();
   knocks.leds_mm[led] = {(*said)(kAlongX), (*said)(kAlongY), (*said)(kAlongZ)};
   return {};

@@ -11,9 +11,9 @@
 namespace weft::virtual_rig {
 namespace {
 
-Error refused(const std::string& word, const std::vector<Setting>& settings) {
+Error refused(const std::string& word, const std::vector<Sayable>& settings) {
   std::vector<std::string> names;
-  for (const Setting& each : settings) names.push_back(fmt::format("{}=NUMBER", each.name));
+  for (const Sayable& each : settings) names.push_back(fmt::format("{}=NUMBER", each.name));
   return {ErrorKind::kUsage, "nobody knows what that is of a thing", word,
           names.empty() ? std::string("nothing can be said of it")
                         : fmt::format("it may be {}", fmt::join(names, ", ")),
@@ -22,13 +22,14 @@ Error refused(const std::string& word, const std::vector<Setting>& settings) {
 
 }  // namespace
 
-Result<Said> Said::of(const std::vector<std::string>& words, const std::vector<Setting>& settings) {
-  Said said;
+Result<SaidValues> SaidValues::of(const std::vector<std::string>& words,
+                                  const std::vector<Sayable>& settings) {
+  SaidValues said;
   for (const std::string& word : words) {
     const std::size_t equals = word.find('=');
     const std::string name = word.substr(0, equals);
     const auto setting =
-        std::ranges::find_if(settings, [&](const Setting& each) { return each.name == name; });
+        std::ranges::find_if(settings, [&](const Sayable& each) { return each.name == name; });
     if (setting == settings.end() || equals == std::string::npos) return refused(word, settings);
     const char* end = word.data() + word.size();
     double value = 0;
@@ -43,7 +44,7 @@ Result<Said> Said::of(const std::vector<std::string>& words, const std::vector<S
   return said;
 }
 
-std::optional<double> Said::value(const Setting& setting) const {
+std::optional<double> SaidValues::value(const Sayable& setting) const {
   for (const auto& [name, value] : values_) {
     if (name == setting.name) return value;
   }

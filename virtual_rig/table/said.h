@@ -11,19 +11,19 @@
 namespace weft::virtual_rig {
 
 /// A number that may be said of a thing.
-struct Setting {
+struct Sayable {
   const char* name;
   double least, most, usual;
 };
 
 /// What was said of a thing, as "tilt=30".
-class Said {
+class SaidValues {
  public:
   /// kUsage for a word that names none of `settings`, or a number out of its range.
-  static Result<Said> of(const std::vector<std::string>& words, const std::vector<Setting>& settings);
+  static Result<SaidValues> of(const std::vector<std::string>& words, const std::vector<Sayable>& settings);
 
-  double operator()(const Setting& setting) const { return value(setting).value_or(setting.usual); }
-  std::optional<double> value(const Setting& setting) const;
+  double operator()(const Sayable& setting) const { return value(setting).value_or(setting.usual); }
+  std::optional<double> value(const Sayable& setting) const;
 
  private:
   std::vector<std::pair<std::string, double>> values_;

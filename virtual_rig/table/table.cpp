@@ -22,14 +22,14 @@ constexpr double kRulerSquare_mm = 5;
 constexpr int kRulerSquares = 20;
 constexpr double kFoldShare = 0.4, kFold_mm = 8;  // of the sheet's width; how broad it is
 
-constexpr Setting kTilt = {"tilt", 0, 80, 0}, kAzimuth = {"azimuth", -360, 360, 0},
+constexpr Sayable kTilt = {"tilt", 0, 80, 0}, kAzimuth = {"azimuth", -360, 360, 0},
                   kTurn = {"turn", -360, 360, 0}, kX = {"x", -10000, 10000, 0}, kY = {"y", -10000, 10000, 0},
                   kHeight = {"height", 0, 1000, 0}, kColumns = {"columns", 3, 100, 0},
                   kRows = {"rows", 3, 100, 0}, kMirrored = {"mirrored", 0, 1, 0},
                   kReflectance = {"reflectance", 0, 1, 0}, kFold = {"fold", 0, 45, 0},
                   kOther = {"other", 0, 1, 0};
 
-simulator::CapturePose pose_of(const Said& said, double above_mm) {
+simulator::CapturePose pose_of(const SaidValues& said, double above_mm) {
   return {.tilt_deg = said(kTilt),
           .azimuth_deg = said(kAzimuth),
           .rotation_deg = said(kTurn),
@@ -37,12 +37,12 @@ simulator::CapturePose pose_of(const Said& said, double above_mm) {
 }
 
 /// A thing that is tilted, turned and shifted as was said, its lowest corner `above_mm` over the table.
-TargetSettings placed(TargetSettings thing, const Said& said, double above_mm) {
+TargetSettings placed(TargetSettings thing, const SaidValues& said, double above_mm) {
   thing.centre_mm = {said(kX), said(kY), 0};
   return simulator::resting(std::move(thing), pose_of(said, above_mm));
 }
 
-std::vector<TargetSettings> board(const BareRig& rig, const Said& said) {
+std::vector<TargetSettings> board(const BareRig& rig, const SaidValues& said) {
   TargetSettings board = rig.flat_board();
   auto& pattern = std::get<simulator::CharucoSettings>(board.pattern);
   pattern.squares_x = static_cast<int>(said.value(kColumns).value_or(pattern.squares_x));
@@ -51,7 +51,7 @@ std::vector<TargetSettings> board(const BareRig& rig, const Said& said) {
   return {placed(board, said, board.centre_mm.z)};
 }
 
-std::vector<TargetSettings> sheet(const BareRig& rig, const Said& said) {
+std::vector<TargetSettings> sheet(const BareRig& rig, const SaidValues& said) {
   TargetSettings paper = rig.paper();
   paper.white = said.value(kReflectance).value_or(paper.white);
   simulator::SheetLayout layout = rig.sheet();
@@ -68,40 +68,40 @@ std::vector<TargetSettings> sheet(const BareRig& rig, const Said& said) {
   return things;
 }
 
-std::vector<TargetSettings> chart(const BareRig& rig, const Said& said) {
+std::vector<TargetSettings> chart(const BareRig& rig, const SaidValues& said) {
   return {placed(rig.chart(), said, rig.chart().centre_mm.z)};
 }
 
-std::vector<TargetSettings> scale(const BareRig& rig, const Said& said) {
+std::vector<TargetSettings> scale(const BareRig& rig, const SaidValues& said) {
   return {placed(rig.grey_scale(), said, rig.grey_scale().centre_mm.z)};
 }
 
-std::vector<TargetSettings> trap(const BareRig& rig, const Said&) {
+std::vector<TargetSettings> trap(const BareRig& rig, const SaidValues&) {
   return rig.trap();
 }
 
-std::vector<TargetSettings> ruler(const BareRig&, const Said& said) {
+std::vector<TargetSettings> ruler(const BareRig&, const SaidValues& said) {
   TargetSettings ruler;
   ruler.pattern = simulator::CheckerboardSettings{
       .squares_x = kRulerSquares, .squares_y = 2, .square_mm = kRulerSquare_mm, .margin_mm = 1};
   return {placed(ruler, said, 1)};
 }
 
-std::vector<TargetSettings> nothing(const BareRig&, const Said&) {
+std::vector<TargetSettings> nothing(const BareRig&, const SaidValues&) {
   return {};
 }
 
 struct Thing {
   const char* name;
-  std::vector<Setting> settings;
-  std::vector<TargetSettings> (*laid)(const BareRig& rig, const Said& said);
+  std::vector<Sayable> settings;
+  std::vector<TargetSettings> (*laid)(const BareRig& rig, const SaidValues& said);
   std::string does;
 };
 
 const std::vector<Thing>& things() {
-  const std::vector<Setting> anyhow = {kTilt, kAzimuth, kTurn, kX, kY, kHeight};
-  const auto and_more = [&](const std::vector<Setting>& more) {
-    std::vector<Setting> all = anyhow;
+  const std::vector<Sayable> anyhow = {kTilt, kAzimuth, kTurn, kX, kY, kHeight};
+  const auto and_more = [&](const std::vector<Sayable>& more) {
+    std::vector<Sayable> all = anyhow;
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };
@@ -162,13 +162,13 @@ Error no_such_thing(const std::string& word) {
 
 }  // namespace
 
-Result<Table> Table::of(const Scene& scene) {
+Result<RigTable> RigTable::of(const Scene& scene) {
   Result<BareRig> bare = BareRig::of(scene);
   if (!bare) return std::move(bare).error();
-  return Table(scene, std::move(*bare));
+  return RigTable(scene, std::move(*bare));
 }
 
-Result<Scene> Table::with(const std::vector<std::string>& words) const {
+Result<Scene> RigTable::with(const std::vector<std::string>& words) const {
   if (words.empty()) return no_such_thing("table");
   const std::vector<std::string> of_it(words.begin() + 1, words.end());
   if (words[0] == "cloth" && of_it.size() <= 1) {
@@ -185,7 +185,7 @@ Result<Scene> Table::with(const std::vector<std::string>& words) const {
                  "its scene names no spectra.chart, or not the effect spectral",
                  "start a rig of testdata/scenes/rig.toml"};
   }
-  const Result<Said> said = Said::of(of_it, thing->settings);
+  const Result<SaidValues> said = SaidValues::of(of_it, thing->settings);
   if (!said) return said.error();
   return bare_.with(thing->laid(bare_, *said));
 }

@@ -12,10 +12,10 @@
 namespace weft::virtual_rig {
 
 /// What can lie on the table of a virtual rig, as a person says it.
-class Table {
+class RigTable {
  public:
   /// The table of the rig that this scene has, with the scene's cloth on it. Errors: as BareRig::of().
-  static Result<Table> of(const simulator::Scene& scene);
+  static Result<RigTable> of(const simulator::Scene& scene);
 
   const simulator::BareRig& rig() const { return bare_; }
 
@@ -25,7 +25,8 @@ class Table {
   Result<simulator::Scene> with(const std::vector<std::string>& words) const;
 
  private:
-  Table(simulator::Scene scene, simulator::BareRig bare) : scene_(std::move(scene)), bare_(std::move(bare)) {}
+  RigTable(simulator::Scene scene, simulator::BareRig bare)
+      : scene_(std::move(scene)), bare_(std::move(bare)) {}
 
   simulator::Scene scene_;
   simulator::BareRig bare_;

@@ -42,7 +42,7 @@ const std::vector<DocumentSchema>& document_schemas() {
       {"weft.calibration-check", "result.json: whether a rig is as it was calibrated",
        fields_of<CheckResult>},
       {"weft.photographs", "photographs.json: photographs under distant lights that were imported",
-       fields_of<PhotographFacts>},
+       fields_of<ImportedPhotographs>},
       {"weft.set", "set.json: photographs for a step of a calibration", fields_of<PhotographSet>},
       {"weft.solve", "solve.json: what a solve was made of and says of itself", fields_of<SolveFacts>},
       {"weft.reflectance", "reflectance.json: the lobes of a cloth", fields_of<ReflectanceFacts>},

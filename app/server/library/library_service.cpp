@@ -116,7 +116,7 @@ void LibraryService::look_again() {
   for (const auto& archive : at_archives_) archive->wait(archive->ask(), until);
 }
 
-Result<library::Page> LibraryService::find(const library::Query& query) {
+Result<library::CataloguePage> LibraryService::find(const library::Query& query) {
   look_again();
   const std::lock_guard lock(asked_mutex_);
   return asked_.find(query);
@@ -156,27 +156,28 @@ void LibraryService::watch(const std::filesystem::path& session) {
   watched_->session = session;
 }
 
-Result<library::Change> LibraryService::change(const std::filesystem::path& session, const Json& fields,
-                                               const library::Provided& provided, const std::string& by) {
+Result<library::MetadataChange> LibraryService::change(const std::filesystem::path& session,
+                                                       const Json& fields, const library::Provided& provided,
+                                                       const std::string& by) {
   const std::lock_guard lock(edits_mutex_);
-  Result<library::Change> change = library::change_metadata(session, fields, provided);
+  Result<library::MetadataChange> change = library::change_metadata(session, fields, provided);
   if (!change || change->after.empty()) return change;
   if (Result<void> ok = edits_.add(*change, by); !ok) return std::move(ok).error();
   return after(std::move(change));
 }
 
-Result<library::Change> LibraryService::undo() {
+Result<library::MetadataChange> LibraryService::undo() {
   const std::lock_guard lock(edits_mutex_);
   return after(edits_.undo());
 }
 
-Result<library::Change> LibraryService::redo() {
+Result<library::MetadataChange> LibraryService::redo() {
   const std::lock_guard lock(edits_mutex_);
   return after(edits_.redo());
 }
 
 // The catalogue knows of a change at once.
-Result<library::Change> LibraryService::after(Result<library::Change> change) {
+Result<library::MetadataChange> LibraryService::after(Result<library::MetadataChange> change) {
   if (change) (void)edited_.refresh(change->folder);
   return change;
 }

@@ -31,7 +31,7 @@ class LibraryService {
 
   /// As the folders were at most a second ago, or, where looking through them takes longer than a blink, as
   /// they were known. The first question waits up to five seconds for the first look at `home`.
-  Result<library::Page> find(const library::Query& query);
+  Result<library::CataloguePage> find(const library::Query& query);
   Result<std::vector<std::pair<std::string, int>>> tags();
   /// A session by its name, as its session.json is now. kUsage for what is no name and for one that several
   /// archives have, kNoInput where there is none, errors of read_session().
@@ -47,10 +47,10 @@ class LibraryService {
   void expire() { at_home_->expire(); }
 
   /// Changes what is said of a session (library/catalogue/metadata.h) and remembers it for undo().
-  Result<library::Change> change(const std::filesystem::path& session, const Json& fields,
-                                 const library::Provided& provided, const std::string& by);
-  Result<library::Change> undo();
-  Result<library::Change> redo();
+  Result<library::MetadataChange> change(const std::filesystem::path& session, const Json& fields,
+                                         const library::Provided& provided, const std::string& by);
+  Result<library::MetadataChange> undo();
+  Result<library::MetadataChange> redo();
 
  private:
   struct Watched;
@@ -58,7 +58,7 @@ class LibraryService {
                  std::filesystem::path home, std::vector<std::filesystem::path> archives);
   Result<void> begin_looking();
   void look_again();
-  Result<library::Change> after(Result<library::Change> change);
+  Result<library::MetadataChange> after(Result<library::MetadataChange> change);
 
   const std::filesystem::path home_;
   const std::vector<std::filesystem::path> archives_;

@@ -52,7 +52,7 @@ const std::vector<Described>& all_described() {
                                              described<ExportFacts>("weft.export"),
                                              described<SolveFacts>("weft.solve"),
                                              described<CheckResult>("weft.calibration-check"),
-                                             described<PhotographFacts>("weft.photographs"),
+                                             described<ImportedPhotographs>("weft.photographs"),
                                              described<ReflectanceFacts>("weft.reflectance"),
                                              described<SolveReportFacts>("weft.solve-report")};
   return all;

@@ -56,7 +56,7 @@ class Batches : public testing::Test {
     worse.state = batch::State::kSolved;
     worse.solve = jobs_[0].solve;
     worse.folder = (fs::path(jobs_[0].session) / "solve" / worse.solve).string();
-    worse.change = batch::Change{};
+    worse.change = batch::MapChange{};
     worse.change->pixels = 100;
     worse.change->mean_deg = 3.5;
     worse.change->max_deg = 9;

@@ -54,13 +54,13 @@ class RenderedPatch : public testing::Test {
     AccuracyScene scene = accuracy_scenes(SceneSet::kTuning, 1, false).front();
     scene.scene.effects.interreflection = false;
     const Rect corner = scene.patches.back();
-    Result<Patch> rendered =
+    Result<ClothPatch> rendered =
         render_patch(scene.scene, {corner.x0, corner.y0, corner.x0 + 48, corner.y0 + 48}, 1);
     ASSERT_TRUE(rendered.has_value()) << rendered.error().message();
-    patch_ = new Patch(std::move(*rendered));
+    patch_ = new ClothPatch(std::move(*rendered));
   }
   static void TearDownTestSuite() { delete patch_; }
-  static inline Patch* patch_ = nullptr;
+  static inline ClothPatch* patch_ = nullptr;
 };
 
 TEST_F(RenderedPatch, ReadsWhatItsLightFieldAndItsTruthPredict) {
@@ -89,7 +89,7 @@ TEST_F(RenderedPatch, ReadsWhatItsLightFieldAndItsTruthPredict) {
 }
 
 TEST_F(RenderedPatch, KeepsReadingsAndFieldOfTheLightsThatAreChosen) {
-  const Result<Patch> fewer = with_lights(*patch_, {2, 5, 9});
+  const Result<ClothPatch> fewer = with_lights(*patch_, {2, 5, 9});
   ASSERT_TRUE(fewer.has_value()) << fewer.error().message();
   ASSERT_EQ(fewer->field().count(), 3U);
   EXPECT_EQ(fewer->readings(7, 5, 2), patch_->readings(7, 5, 8));

@@ -15,7 +15,7 @@ namespace {
 // A contender that knows the truth and spoils it: turns every normal by some degrees and makes the albedo
 // wrong by `bias` + `leak` (openness - 1/2).
 Contender spoiler(double turn_deg, double bias, double leak) {
-  return {"spoiler", [=](const Patch& patch, int, SolvedMaps& maps) -> Result<void> {
+  return {"spoiler", [=](const ClothPatch& patch, int, SolvedMaps& maps) -> Result<void> {
             const CfaPattern cfa;
             for (int y = 0; y < patch.size().height; ++y) {
               for (int x = 0; x < patch.size().width; ++x) {
@@ -36,7 +36,7 @@ Contender spoiler(double turn_deg, double bias, double leak) {
 // A patch with all that scoring looks at: level cloth of albedo 1/2, openness rising from left to right.
 BoundedPatches plain_patch(float bound_deg) {
   const Size size = {64, 48};
-  Patch patch;
+  ClothPatch patch;
   patch.photographs.size = size;
   RawFrame frame;
   frame.counts = Image<std::uint16_t>({2, 2});
@@ -88,7 +88,7 @@ TEST(AccuracyScore, CountsANormalThatIsNoNumberAsUnknown) {
 }
 
 TEST(AccuracyScore, PassesOnWhatStopsAContender) {
-  const Contender broken = {"broken", [](const Patch&, int, SolvedMaps&) -> Result<void> {
+  const Contender broken = {"broken", [](const ClothPatch&, int, SolvedMaps&) -> Result<void> {
                               return Error{ErrorKind::kTryAgain, "no", "", "", ""};
                             }};
   EXPECT_FALSE(score(broken, plain_patch(1), 1).has_value());

@@ -22,7 +22,7 @@ NearLight led() {
   return light;
 }
 
-Sight sight() {
+LineOfSight sight() {
   return sight_of(overhead_camera({400, 300}, 600, 0.5), 250, 110);
 }
 

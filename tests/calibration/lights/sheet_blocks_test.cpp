@@ -17,12 +17,12 @@ constexpr float kFull = std::numeric_limits<float>::infinity();
 constexpr int kSide = 16;
 
 // One row of blocks of a mosaic.
-BlockGrid averaged(Size size, const std::function<float(int x, int y)>& reading) {
+SheetBlockGrid averaged(Size size, const std::function<float(int x, int y)>& reading) {
   Image<float> frame(size);
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) frame(x, y) = reading(x, y);
   }
-  BlockGrid grid(size, kSide);
+  SheetBlockGrid grid(size, kSide);
   for (int row = 0; row < grid.rows; ++row)
     average_row(grid, row, frame.plane().crop({0, row * kSide, size.width, (row + 1) * kSide}), CfaPattern());
   return grid;
@@ -30,7 +30,7 @@ BlockGrid averaged(Size size, const std::function<float(int x, int y)>& reading)
 
 TEST(SheetBlocks, ReadASlopeAtTheirCentreInEveryChannel) {
   // Red and blue photosites are half a pixel to either side of the centre: the slope must not shift them.
-  const BlockGrid grid =
+  const SheetBlockGrid grid =
       averaged({48, 32}, [](int x, int y) { return static_cast<float>(100 + 2 * x - 3 * y); });
   ASSERT_EQ(grid.columns, 3);
   ASSERT_EQ(grid.rows, 2);
@@ -47,7 +47,7 @@ TEST(SheetBlocks, LeaveOutWhatIsFarOut) {
     if (x == 4 && y == 6) return 9000.0f;  // a hot photosite, of red
     return 100 + (((x / 2 + y / 2) % 2 == 0) ? 1.0f : -1.0f);
   };
-  const BlockGrid grid = averaged({16, 16}, reading);
+  const SheetBlockGrid grid = averaged({16, 16}, reading);
   EXPECT_EQ(grid.at(0, 0, 0).clipped, 1);
   EXPECT_EQ(grid.at(0, 0, 0).count, 63);
   EXPECT_NEAR(grid.at(0, 0, 0).reading, 100, 0.1);
@@ -56,7 +56,7 @@ TEST(SheetBlocks, LeaveOutWhatIsFarOut) {
 
 TEST(SheetBlocks, KnowTheirStandardError) {
   test::Random random(3);
-  const BlockGrid grid =
+  const SheetBlockGrid grid =
       averaged({1600, 64}, [&](int, int) { return static_cast<float>(100 + 2 * random.normal()); });
   double off = 0, claimed = 0;
   for (int row = 0; row < grid.rows; ++row) {
@@ -71,7 +71,7 @@ TEST(SheetBlocks, KnowTheirStandardError) {
 }
 
 TEST(SheetBlocks, SaySoWherePhotositesAreFullOrMissing) {
-  const BlockGrid grid = averaged({48, 16}, [](int x, int y) {
+  const SheetBlockGrid grid = averaged({48, 16}, [](int x, int y) {
     if (x == 2 && y == 2) return kFull;
     if (x >= 16 && x < 32 && y < 12) return kNaN;
     return 5.0f;
@@ -90,7 +90,7 @@ TEST(SheetBlocks, OfDevelopedPicturesAreThoseOfTheirPlanes) {
       for (int x = 0; x < 16; ++x) rgb(x, y, c) = static_cast<float>(10 * c + x);
     }
   }
-  BlockGrid grid({16, 16}, kSide);
+  SheetBlockGrid grid({16, 16}, kSide);
   average_row(grid, 0, std::array<View<const float>, 3>{rgb.plane(0), rgb.plane(1), rgb.plane(2)});
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(grid.at(0, 0, c).reading, 10 * c + 7.5, 1e-9);
@@ -112,7 +112,7 @@ TEST(SheetBlocks, OfAHundredMegapixelsAddUpExactly) {
       exact += static_cast<long double>(band(x, y)) / (static_cast<long double>(frame.width) * kSide);
     }
   }
-  BlockGrid grid(frame, kSide);
+  SheetBlockGrid grid(frame, kSide);
   average_row(grid, 0, std::array<View<const float>, 3>{band.plane(), band.plane(), band.plane()});
   std::vector<std::array<int, 2>> places;
   for (int row = 0; row < grid.rows; ++row) {
@@ -127,7 +127,7 @@ TEST(SheetBlocks, OfAHundredMegapixelsAddUpExactly) {
 }
 
 TEST(SheetBlocks, MergeToTheMeanOfThoseThatAreWhole) {
-  const BlockGrid grid =
+  const SheetBlockGrid grid =
       averaged({64, 16}, [](int x, int y) { return x == 3 && y == 3 ? kFull : static_cast<float>(x / 16); });
   const std::vector<std::array<int, 2>> places = {{0, 0}, {1, 0}, {3, 0}};
   const MergedBlock merged = merge(grid, places);
@@ -139,7 +139,7 @@ TEST(SheetBlocks, MergeToTheMeanOfThoseThatAreWhole) {
 
 TEST(SheetBlocks, CountTextureThatIsCoarserThanAPhotosite) {
   // Every block is even, but they differ by 1 in 10: their mean is not known to the zero that each claims.
-  const BlockGrid grid = averaged({256, 16}, [](int x, int) { return x / 16 % 2 == 0 ? 9.0f : 11.0f; });
+  const SheetBlockGrid grid = averaged({256, 16}, [](int x, int) { return x / 16 % 2 == 0 ? 9.0f : 11.0f; });
   std::vector<std::array<int, 2>> places;
   for (int column = 0; column < 16; ++column) places.push_back({column, 0});
   EXPECT_NEAR(merge(grid, places).relative_sigma[1], 0.1 / 4, 0.004);

@@ -58,7 +58,7 @@ std::string text_of(int index) {
   return "photograph " + std::to_string(index);
 }
 
-Photograph landed(const Journal& journal, const PlannedShot& shot) {
+Photograph landed(const Journal& journal, const DueShot& shot) {
   Photograph photograph;
   photograph.file = journal.incoming(file_stem(shot) + ".dng");
   std::ofstream(photograph.file) << text_of(shot.index);
@@ -75,7 +75,7 @@ Result<void> scanned(
   Result<Journal> journal = opened(request, after_step);
   if (!journal) return journal.error();
   if (Result<void> ok = journal->set_exposure({{"exposure_us", 20000}}); !ok) return ok;
-  for (const PlannedShot& shot : missing_shots(plan_shots(kList, kExposure, {}), journal->session())) {
+  for (const DueShot& shot : missing_shots(plan_shots(kList, kExposure, {}), journal->session())) {
     Result<Shot> kept = journal->keep(shot, landed(*journal, shot), Json::object());
     if (!kept) return kept.error();
   }
@@ -91,7 +91,7 @@ TEST(Journal, StoresOneExposureTimeForASetting) {
   const ScanRequest request = request_in(fresh_folder());
   Result<Journal> journal = opened(request);
   ASSERT_TRUE(journal) << journal.error().message();
-  for (const PlannedShot& shot : plan_shots(kList, kExposure, {})) {
+  for (const DueShot& shot : plan_shots(kList, kExposure, {})) {
     Photograph photograph = landed(*journal, shot);
     photograph.exposure.exposure_us = shot.index == 0 ? 20080 : 19990;  // as a body that measures each anew
     ASSERT_TRUE(journal->keep(shot, photograph, Json::object()));
@@ -179,7 +179,7 @@ ScanRequest unfinished(const fs::path& folder) {
   const ScanRequest request = request_in(folder);
   Result<Journal> journal = opened(request);
   EXPECT_TRUE(journal) << journal.error().message();
-  for (const PlannedShot& shot : plan_shots(kList, kExposure, {})) {
+  for (const DueShot& shot : plan_shots(kList, kExposure, {})) {
     const Result<Shot> kept = journal->keep(shot, landed(*journal, shot), Json::object());
     EXPECT_TRUE(kept) << kept.error().message();
   }
@@ -194,7 +194,7 @@ TEST(Journal, TakesFramesAgainThatAreMissingOrChanged) {
   const Result<Journal> journal = opened(request);
   ASSERT_TRUE(journal) << journal.error().message();
   std::vector<int> missing;
-  for (const PlannedShot& shot : missing_shots(plan_shots(kList, kExposure, {}), journal->session())) {
+  for (const DueShot& shot : missing_shots(plan_shots(kList, kExposure, {}), journal->session())) {
     missing.push_back(shot.index);
   }
   EXPECT_EQ(missing, (std::vector<int>{1, 2}));
@@ -240,7 +240,7 @@ TEST(Journal, KeepsEveryTakeAsideUntilTheSessionIsFinished) {
   {
     Result<Journal> journal = opened(request);
     ASSERT_TRUE(journal) << journal.error().message();
-    const PlannedShot shot = plan_shots(kList, kExposure, {})[1];
+    const DueShot shot = plan_shots(kList, kExposure, {})[1];
     ASSERT_TRUE(journal->discard({1}));
     ASSERT_TRUE(journal->keep(shot, landed(*journal, shot), Json::object()));
     ASSERT_TRUE(journal->discard({1}));
@@ -335,7 +335,7 @@ TEST(Journal, DoesNotKeepAPhotographThatChangedOnItsWay) {
   const ScanRequest request = request_in(fresh_folder());
   Result<Journal> journal = opened(request);
   ASSERT_TRUE(journal) << journal.error().message();
-  const PlannedShot shot = plan_shots(kList, kExposure, {}).front();
+  const DueShot shot = plan_shots(kList, kExposure, {}).front();
   Photograph photograph = landed(*journal, shot);
   std::ofstream(photograph.file) << "other bytes";
   const Result<Shot> kept = journal->keep(shot, photograph, Json::object());

@@ -37,7 +37,7 @@ Told told(const simulator::Scene& scene, const Story& story, bool with_model = t
   ScanEvidence evidence(grid, with_model ? std::optional(std::move(*model)) : std::nullopt);
   const ExposureSettings exposure = {brightness * cloth.scene_exposure_us(), 100, 8};
   Told told;
-  for (const PlannedShot& shot : plan_shots({{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, true, {}}, exposure, {})) {
+  for (const DueShot& shot : plan_shots({{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, true, {}}, exposure, {})) {
     const bool is_repeat = shot.role == ShotRole::kRepeat;
     const Lighting lighting = story(!is_repeat ? shot.led : shot.led == 0 ? kDarkAgain : kRepeat);
     std::vector<double> light = evidence.glance(
@@ -46,7 +46,7 @@ Told told(const simulator::Scene& scene, const Story& story, bool with_model = t
     told.warnings.insert(told.warnings.end(), told.verdict.warnings.begin(), told.verdict.warnings.end());
     told.at = shot.index;
     if (told.verdict.level && is_repeat) told.drift = *told.verdict.level;
-    if (told.verdict.finding != Finding::kAgrees) return told;
+    if (told.verdict.finding != LightFinding::kAgrees) return told;
     evidence.accept(shot, std::move(light));
   }
   return told;
@@ -67,7 +67,7 @@ simulator::Scene woven() {
 TEST(LightEvidence, AgreesWithASessionAsPlanned) {
   for (const auto& scene : {test::small_scene(), woven()}) {
     const Told t = told(scene, as_planned);
-    EXPECT_EQ(t.verdict.finding, Finding::kAgrees) << t.verdict.sentence;
+    EXPECT_EQ(t.verdict.finding, LightFinding::kAgrees) << t.verdict.sentence;
     EXPECT_EQ(t.at, 12);
     EXPECT_TRUE(t.warnings.empty()) << t.warnings.front();
     EXPECT_NEAR(t.drift, 1, 0.005);
@@ -80,7 +80,7 @@ TEST(LightEvidence, BlamesNoLightWhereFramesAreFull) {
   for (const auto& scene : {woven(), satin}) {
     for (double brightness = 1; brightness < 16; brightness *= 1.25) {
       const Told t = told(scene, as_planned, true, brightness);
-      EXPECT_EQ(t.verdict.finding, Finding::kAgrees) << brightness << " times: " << t.verdict.sentence;
+      EXPECT_EQ(t.verdict.finding, LightFinding::kAgrees) << brightness << " times: " << t.verdict.sentence;
     }
   }
   EXPECT_THAT(told(woven(), as_planned, true, 8).warnings, testing::Contains(HasSubstr("full photosites")));
@@ -98,7 +98,7 @@ ShotVerdict other_state(const std::map<int, Lighting>& lightings) {
   const ShotList list = {
       {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, true, {}, {Polariser::kCrossed, Polariser::kParallel}};
   ShotVerdict verdict;
-  for (const PlannedShot& shot : plan_shots(list, exposure, {})) {
+  for (const DueShot& shot : plan_shots(list, exposure, {})) {
     const bool is_other = shot.polariser == Polariser::kParallel;
     if (is_other && !lightings.contains(shot.led)) continue;
     const Lighting of_plan = shot.led == 0 ? Lighting() : Lighting{{{shot.led, 1.0}}, 0};
@@ -106,7 +106,7 @@ ShotVerdict other_state(const std::map<int, Lighting>& lightings) {
         evidence.glance(cloth.photograph(is_other ? lightings.at(shot.led) : of_plan, exposure.exposure_us,
                                          static_cast<std::uint32_t>(shot.index)));
     verdict = evidence.judge(shot, light);
-    EXPECT_TRUE(is_other || verdict.finding == Finding::kAgrees) << verdict.sentence;
+    EXPECT_TRUE(is_other || verdict.finding == LightFinding::kAgrees) << verdict.sentence;
     if (is_other && shot.led == lightings.rbegin()->first) break;
     evidence.accept(shot, std::move(light));
   }
@@ -115,11 +115,11 @@ ShotVerdict other_state(const std::map<int, Lighting>& lightings) {
 
 TEST(LightEvidence, HoldsTheOtherStateOfThePolariserAgainstTheFirst) {
   const ShotVerdict brighter = other_state({{3, {{{3, 1.2}}, 0}}});
-  EXPECT_EQ(brighter.finding, Finding::kAgrees) << brighter.sentence;
+  EXPECT_EQ(brighter.finding, LightFinding::kAgrees) << brighter.sentence;
   EXPECT_NEAR(brighter.level.value_or(0), 1.2, 0.01);
-  EXPECT_EQ(other_state({{3, {}}}).finding, Finding::kDark);
+  EXPECT_EQ(other_state({{3, {}}}).finding, LightFinding::kDark);
   const ShotVerdict other = other_state({{3, {{{5, 1.0}}, 0}}});
-  EXPECT_EQ(other.finding, Finding::kOther);
+  EXPECT_EQ(other.finding, LightFinding::kOther);
   EXPECT_THAT(other.sentence, HasSubstr("LED 5 lights where LED 3 should"));
   EXPECT_THAT(other.accused, ElementsAre(14));
 }
@@ -133,17 +133,17 @@ TEST(LightEvidence, AccusesBothFramesOfSwappedLedsInTheOtherState) {
 TEST(LightEvidence, BelievesNoFrameOfTheOtherStateWhereOneIsNotOfItsLed) {
   const ShotVerdict other =
       other_state({{2, {{{2, 1.0}}, 0}}, {3, {{{3, 1.0}}, 0}}, {4, {{{4, 1.0}}, 0}}, {6, {{{9, 1.0}}, 0}}});
-  EXPECT_EQ(other.finding, Finding::kOther);
+  EXPECT_EQ(other.finding, LightFinding::kOther);
   EXPECT_THAT(other.accused, ElementsAre(17, 13, 14, 15)) << "a lamp may have lit them";
 }
 
 TEST(LightEvidence, SpeaksOfALightBelowThatNothingComesThroughOf) {
   const test::SimulatedCloth cloth(woven());
   ScanEvidence evidence(PatchGrid::over(cloth.calibration().camera->size), std::nullopt);
-  const PlannedShot below = {12, 0, ShotRole::kBelow, {cloth.scene_exposure_us(), 100, 8}};
+  const DueShot below = {12, 0, ShotRole::kBelow, {cloth.scene_exposure_us(), 100, 8}};
   const ShotVerdict dense = evidence.judge(below, evidence.glance(cloth.photograph({}, 1000, 1)));
-  EXPECT_EQ(dense.finding, Finding::kAgrees) << "it is kept";
-  EXPECT_EQ(dense.doubt, Finding::kDark);
+  EXPECT_EQ(dense.finding, LightFinding::kAgrees) << "it is kept";
+  EXPECT_EQ(dense.doubt, LightFinding::kDark);
   ASSERT_EQ(dense.warnings.size(), 1u);
   const Lighting through = {{{1, 0.5}}, 0};
   EXPECT_TRUE(evidence.judge(below, evidence.glance(cloth.photograph(through, cloth.scene_exposure_us(), 2)))
@@ -153,7 +153,7 @@ TEST(LightEvidence, SpeaksOfALightBelowThatNothingComesThroughOf) {
 TEST(LightEvidence, NamesTwoSwappedLeds) {
   for (const auto& scene : {test::small_scene(), woven()}) {
     const Told t = told(scene, [](int led) { return as_planned(led == 3 ? 4 : led == 4 ? 3 : led); });
-    EXPECT_EQ(t.verdict.finding, Finding::kOther);
+    EXPECT_EQ(t.verdict.finding, LightFinding::kOther);
     EXPECT_THAT(t.verdict.sentence, HasSubstr("LED 4 lights where LED 3 should and the other way round"));
     EXPECT_THAT(t.verdict.accused, ElementsAre(3, 4));
     EXPECT_FALSE(t.verdict.may_pass());
@@ -173,7 +173,7 @@ TEST(LightEvidence, NamesADarkLedAndADimOne) {
   EXPECT_EQ(t.at, 5);
   EXPECT_TRUE(t.verdict.may_pass());
   t = told(woven(), [](int led) { return led == 5 ? Lighting{{{5, 0.25}}, 0} : as_planned(led); });
-  EXPECT_EQ(t.verdict.finding, Finding::kDim) << t.verdict.sentence;
+  EXPECT_EQ(t.verdict.finding, LightFinding::kDim) << t.verdict.sentence;
   t = told(woven(), [](int led) { return led == 1 ? Lighting() : as_planned(led); });
   EXPECT_EQ(t.verdict.sentence, "LED 1 is dark") << "the first one, too";
   auto scene = woven();
@@ -199,7 +199,7 @@ TEST(LightEvidence, TellsALampInTheRoomFromTheFirstShotOn) {
     lighting.room = 0.1;
     return lighting;
   });
-  EXPECT_EQ(t.verdict.finding, Finding::kRoomLight);
+  EXPECT_EQ(t.verdict.finding, LightFinding::kRoomLight);
   EXPECT_EQ(t.at, 0) << "by the dark shot";
 }
 
@@ -209,7 +209,7 @@ TEST(LightEvidence, TellsALampThatIsSwitchedOnMeanwhileAtTheRepeatAtLatest) {
     if (led > 6 || led == kRepeat) lighting.room = 0.5;
     return lighting;
   });
-  EXPECT_NE(t.verdict.finding, Finding::kAgrees);
+  EXPECT_NE(t.verdict.finding, LightFinding::kAgrees);
 }
 
 TEST(LightEvidence, BelievesNoFrameWhereALampWasOnAndIsOutAgain) {
@@ -218,7 +218,7 @@ TEST(LightEvidence, BelievesNoFrameWhereALampWasOnAndIsOutAgain) {
     if (led == 3 || led == 4) lighting.room = 0.5;
     return lighting;
   });
-  EXPECT_EQ(t.verdict.finding, Finding::kRoomLight) << t.verdict.sentence;
+  EXPECT_EQ(t.verdict.finding, LightFinding::kRoomLight) << t.verdict.sentence;
   EXPECT_TRUE(t.verdict.accuses_all);
   EXPECT_TRUE(t.verdict.is_over && t.verdict.may_pass()) << "so all are taken again at once";
 }
@@ -235,8 +235,8 @@ Told with_light_between(double room) {
 TEST(LightEvidence, SpeaksOfLittleLightThatCameBetweenTheTwoDarkShots) {
   for (const double room : {0.0, 1e-3, -1e-3, 5e-3}) {
     const Told t = with_light_between(room);
-    EXPECT_EQ(t.verdict.finding, Finding::kAgrees) << "it is kept: " << t.verdict.sentence;
-    EXPECT_EQ(t.verdict.doubt, room == 0 ? Finding::kAgrees : Finding::kRoomLight) << room;
+    EXPECT_EQ(t.verdict.finding, LightFinding::kAgrees) << "it is kept: " << t.verdict.sentence;
+    EXPECT_EQ(t.verdict.doubt, room == 0 ? LightFinding::kAgrees : LightFinding::kRoomLight) << room;
     ASSERT_EQ(t.warnings.size(), room == 0 ? 0U : 1U) << room;
     if (room == 0) continue;
     EXPECT_THAT(t.warnings.front(), HasSubstr(room < 0 ? "the dark shot at the end is darker"
@@ -247,7 +247,7 @@ TEST(LightEvidence, SpeaksOfLittleLightThatCameBetweenTheTwoDarkShots) {
 TEST(LightEvidence, AccusesAllFramesWhereALampIsOnAtTheEnd) {
   for (const double room : {0.1, 0.5, 5.0}) {
     const Told t = with_light_between(room);
-    EXPECT_EQ(t.verdict.finding, Finding::kRoomLight) << room;
+    EXPECT_EQ(t.verdict.finding, LightFinding::kRoomLight) << room;
     EXPECT_TRUE(t.verdict.accuses_all) << room;
     EXPECT_FALSE(t.verdict.may_pass()) << "somebody has to put it out";
   }
@@ -260,7 +260,7 @@ TEST(LightEvidence, BelievesNoFrameWhereOneIsFullAndTheOthersAreNot) {
       if (led == from || led == from + 1) lighting.room = 5;
       return lighting;
     });
-    EXPECT_EQ(t.verdict.finding, Finding::kRoomLight) << t.verdict.sentence;
+    EXPECT_EQ(t.verdict.finding, LightFinding::kRoomLight) << t.verdict.sentence;
     EXPECT_TRUE(t.verdict.accuses_all);
     EXPECT_EQ(t.verdict.is_over, from < 6) << "four frames that are not full tell of one that is";
   }
@@ -273,7 +273,7 @@ TEST(LightEvidence, SpeaksOfDriftFromHalfAPercentOn) {
   const Told still = told(woven(), fading(0.997));
   EXPECT_TRUE(still.warnings.empty());
   const Told fades = told(woven(), fading(0.993));
-  EXPECT_EQ(fades.verdict.finding, Finding::kAgrees);
+  EXPECT_EQ(fades.verdict.finding, LightFinding::kAgrees);
   ASSERT_EQ(fades.warnings.size(), 1u);
   EXPECT_THAT(fades.warnings.front(), HasSubstr("percent less light at the end"));
 }
@@ -284,7 +284,7 @@ TEST(LightEvidence, WithoutACalibrationStillTellsDarknessAndAChangedRepeat) {
   EXPECT_EQ(t.verdict.sentence, "LED 5 is dark");
   t = told(
       woven(), [](int led) { return as_planned(led == kRepeat ? 7 : led); }, false);
-  EXPECT_EQ(t.verdict.finding, Finding::kChanged) << t.verdict.sentence;
+  EXPECT_EQ(t.verdict.finding, LightFinding::kChanged) << t.verdict.sentence;
 }
 
 TEST(PatchGrid, LiesInsideTheFrameOnWholeFilterCells) {

@@ -13,9 +13,9 @@ namespace {
 
 using testing::ElementsAre;
 
-std::vector<std::string> stems(const std::vector<PlannedShot>& plan) {
+std::vector<std::string> stems(const std::vector<DueShot>& plan) {
   std::vector<std::string> names;
-  for (const PlannedShot& shot : plan) names.push_back(file_stem(shot));
+  for (const DueShot& shot : plan) names.push_back(file_stem(shot));
   return names;
 }
 
@@ -26,7 +26,7 @@ TEST(Plan, BeginsAndEndsInTheDarkAndRepeatsTheFirstLed) {
   EXPECT_EQ(plan[4].role, ShotRole::kRepeat);
   EXPECT_EQ(plan.front().role, ShotRole::kDark);
   EXPECT_EQ(plan.back().role, ShotRole::kRepeat);
-  for (const PlannedShot& shot : plan) EXPECT_EQ(shot.exposure, (ExposureSettings{20000, 100, 8}));
+  for (const DueShot& shot : plan) EXPECT_EQ(shot.exposure, (ExposureSettings{20000, 100, 8}));
 }
 
 TEST(Plan, TakesBracketsAfterTheLedsAndAtTheirOwnTime) {

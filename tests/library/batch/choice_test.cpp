@@ -12,7 +12,7 @@
 namespace weft::batch {
 namespace {
 
-using Sessions = std::vector<std::vector<Option>>;
+using Sessions = std::vector<std::vector<LevelOption>>;
 
 double seconds_of(const Sessions& sessions, const std::vector<std::size_t>& chosen) {
   double seconds = 0;
@@ -97,7 +97,7 @@ TEST(Spending, HasACurveThatFallsFromTheCheapestToTheBest) {
 }
 
 TEST(CheapestWithin, IsTheCheapestThatIsCloseEnough) {
-  const std::vector<Option> options = {{1, 5}, {2, 0.7}, {3, 0.6}, {2.5, 0.5}};
+  const std::vector<LevelOption> options = {{1, 5}, {2, 0.7}, {3, 0.6}, {2.5, 0.5}};
   EXPECT_EQ(cheapest_within(options, 1), 1U);
   EXPECT_EQ(cheapest_within(options, 0.65), 3U);
   EXPECT_EQ(cheapest_within(options, 0.4), std::nullopt);

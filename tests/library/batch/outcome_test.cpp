@@ -31,7 +31,7 @@ Outcome solved(const std::string& session) {
   outcome.made = {"/a/maps/1"};
   outcome.left_out = 0.05;
   outcome.warnings = {"LED_DEAD"};
-  Change change;
+  MapChange change;
   change.pixels = 100;
   change.mean_deg = 0.5;
   change.sigma_deg = {0.5, 0.6};

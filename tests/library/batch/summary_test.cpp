@@ -93,7 +93,7 @@ TEST(Summary, NamesTheCalibrationFirstThatMadeSessionsWorse) {
     Job& job = plan.jobs[i];
     job.calibration = i < 2 ? "good" : i < 4 ? "wrong" : "fine";
     Outcome outcome = done(job);
-    Change change;
+    MapChange change;
     change.mean_deg = change.p95_deg = change.max_deg = i < 2 ? 9 : 2;
     change.sigma_deg = {0.5, job.calibration == "wrong" ? 0.9 : 0.5};
     outcome.change = change;
@@ -128,7 +128,7 @@ TEST(Summary, OfAnUnchangedArchiveHasNoChangedPixel) {
   std::map<std::string, History> histories;
   for (const Job& job : plan.jobs) {
     Outcome outcome = done(job);
-    outcome.change = Change{.pixels = 100};
+    outcome.change = MapChange{.pixels = 100};
     histories[job.session] = {outcome, {}, 1};
   }
   const Summary summary = summarize(rows_of(plan, histories));

@@ -26,7 +26,7 @@ RefreshFacts refreshed(Catalogue& catalogue, const std::vector<std::filesystem::
 
 // Names of the sessions that fit, in order.
 std::vector<std::string> found(Catalogue& catalogue, const Query& query) {
-  const Result<Page> page = catalogue.find(query);
+  const Result<CataloguePage> page = catalogue.find(query);
   EXPECT_TRUE(page) << (page ? "" : page.error().message());
   std::vector<std::string> names;
   for (const Entry& entry : page->entries) names.push_back(entry.name);
@@ -283,7 +283,7 @@ TEST(Catalogue, PagesThroughAllSessionsWithoutSkippingOrRepeating) {
     Query query = {.words = words, .limit = 7};
     int pages = 0;
     do {
-      const Result<Page> page = catalogue.find(query);
+      const Result<CataloguePage> page = catalogue.find(query);
       ASSERT_TRUE(page) << page.error().message();
       EXPECT_EQ(page->total, 25U);
       for (const Entry& entry : page->entries) EXPECT_TRUE(names.insert(entry.name).second) << entry.name;

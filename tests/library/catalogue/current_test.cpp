@@ -65,7 +65,7 @@ class CurrentSolve : public testing::Test {
   SessionSolves solves() const { return solves_of(*read_session(folder_)); }
   std::string current() const { return current_solve(*read_session(folder_)); }
   void set(const Json& fields) const {
-    const Result<Change> changed = change_metadata(folder_, fields);
+    const Result<MetadataChange> changed = change_metadata(folder_, fields);
     ASSERT_TRUE(changed) << changed.error().message();
   }
 

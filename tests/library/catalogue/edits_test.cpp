@@ -17,7 +17,7 @@ std::string notes_of(const std::filesystem::path& folder) {
 // Edits from the file each time, as after a restart.
 Result<void> write_notes(const std::filesystem::path& file, const std::filesystem::path& folder,
                          const std::string& notes) {
-  const Result<Change> change = change_metadata(folder, {{"notes", notes}});
+  const Result<MetadataChange> change = change_metadata(folder, {{"notes", notes}});
   EXPECT_TRUE(change) << (change ? "" : change.error().message());
   return Edits::open(file)->add(*change, "Ann");
 }
@@ -27,13 +27,13 @@ TEST(Edits, AreTakenBackAndMadeAgainTwentyTimesAcrossRestarts) {
   const auto folder = shelf.put("a"), file = shelf.beside("edits.json");
   for (int i = 1; i <= 23; ++i) ASSERT_TRUE(write_notes(file, folder, std::to_string(i)));
   for (int i = 22; i >= 3; --i) {
-    const Result<Change> undone = Edits::open(file)->undo();
+    const Result<MetadataChange> undone = Edits::open(file)->undo();
     ASSERT_TRUE(undone) << i << ": " << undone.error().message();
     EXPECT_EQ(notes_of(folder), std::to_string(i));
   }
   EXPECT_FALSE(Edits::open(file)->undo()) << "twenty are remembered";
   for (int i = 4; i <= 23; ++i) {
-    const Result<Change> redone = Edits::open(file)->redo();
+    const Result<MetadataChange> redone = Edits::open(file)->redo();
     ASSERT_TRUE(redone) << i << ": " << redone.error().message();
     EXPECT_EQ(words_of(*redone), "notes: " + std::to_string(i) + " of a");
   }
@@ -57,7 +57,7 @@ TEST(Edits, LeaveAloneWhatSomebodyElseChangedSince) {
   const auto folder = shelf.put("a"), file = shelf.beside("edits.json");
   ASSERT_TRUE(write_notes(file, folder, "mine"));
   ASSERT_TRUE(change_metadata(folder, {{"notes", "theirs"}}));
-  const Result<Change> undone = Edits::open(file)->undo();
+  const Result<MetadataChange> undone = Edits::open(file)->undo();
   ASSERT_FALSE(undone);
   EXPECT_EQ(undone.error().kind, ErrorKind::kTryAgain);
   EXPECT_EQ(notes_of(folder), "theirs");

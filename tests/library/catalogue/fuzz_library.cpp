@@ -17,9 +17,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
 
   // Words are never a language: there are too many of them, or they are looked for.
-  const Result<library::Page> page = catalogue->find({.words = text});
+  const Result<library::CataloguePage> page = catalogue->find({.words = text});
   if (!page && page.error().kind != ErrorKind::kUsage) std::abort();
-  const Result<library::Page> filtered = catalogue->find({.id = text, .tag = text, .from = text});
+  const Result<library::CataloguePage> filtered = catalogue->find({.id = text, .tag = text, .from = text});
   if (!filtered || filtered->total != 0) std::abort();
 
   const Json document = Json::parse(text, nullptr, false);

@@ -19,15 +19,15 @@ namespace {
 TEST(Metadata, IsWrittenIntoTheSessionAndReadBack) {
   const Shelf shelf;
   const auto folder = shelf.put("a", {{"future", {1, 2}}, {"metadata", {{"future", "kept"}}}});
-  const Result<Change> change = change_metadata(folder, {{"id", "4006381333931"},
-                                                         {"tags", {"wool", "red", "wool"}},
-                                                         {"composition", "80 % wool"},
-                                                         {"construction", "twill 2/1"},
-                                                         {"side", "back"},
-                                                         {"notes", "first line\nsecond"},
-                                                         {"weight_g_m2", 210},
-                                                         {"thickness_mm", 0.7},
-                                                         {"fabric", "Twill \u00e9"}});
+  const Result<MetadataChange> change = change_metadata(folder, {{"id", "4006381333931"},
+                                                                 {"tags", {"wool", "red", "wool"}},
+                                                                 {"composition", "80 % wool"},
+                                                                 {"construction", "twill 2/1"},
+                                                                 {"side", "back"},
+                                                                 {"notes", "first line\nsecond"},
+                                                                 {"weight_g_m2", 210},
+                                                                 {"thickness_mm", 0.7},
+                                                                 {"fabric", "Twill \u00e9"}});
   ASSERT_TRUE(change) << change.error().message();
   const Result<Session> session = read_session(folder);
   ASSERT_TRUE(session);
@@ -52,7 +52,7 @@ TEST(Metadata, IsWrittenIntoTheSessionAndReadBack) {
 TEST(Metadata, ThatIsTheSameAlreadyCountsAsNoChange) {
   const Shelf shelf;
   const auto folder = shelf.put("a");
-  const Result<Change> change = change_metadata(folder, {{"fabric", "twill"}, {"notes", nullptr}});
+  const Result<MetadataChange> change = change_metadata(folder, {{"fabric", "twill"}, {"notes", nullptr}});
   ASSERT_TRUE(change);
   EXPECT_TRUE(change->after.empty());
   EXPECT_EQ(change->revision, 0);
@@ -83,7 +83,7 @@ TEST(Metadata, TakesWhatPagesAndTablesMustEscapeButNoControlCharacters) {
       {{{"shots", Json::array()}}, "no such field"},
       {Json::object(), "no field"}};
   for (const auto& [fields, why] : refused) {
-    const Result<Change> change = change_metadata(folder, fields);
+    const Result<MetadataChange> change = change_metadata(folder, fields);
     ASSERT_FALSE(change) << why;
     EXPECT_EQ(change.error().kind, ErrorKind::kUsage) << why;
     EXPECT_NE(change.error().why.find(why), std::string::npos) << change.error().message();
@@ -94,14 +94,14 @@ TEST(Metadata, IsNotChangedOverSomebodyElsesChangeNorWhileAScanWrites) {
   const Shelf shelf;
   const auto folder = shelf.put("a");
   ASSERT_TRUE(change_metadata(folder, {{"tags", {"mine"}}}, {.revision = 0}));
-  const Result<Change> late = change_metadata(folder, {{"tags", {"theirs"}}}, {.revision = 0});
+  const Result<MetadataChange> late = change_metadata(folder, {{"tags", {"theirs"}}}, {.revision = 0});
   ASSERT_FALSE(late);
   EXPECT_EQ(late.error().kind, ErrorKind::kTryAgain);
   EXPECT_EQ(metadata_of(*read_session(folder))->tags, std::vector<std::string>{"mine"});
 
   const Result<Descriptor> scan = lock_session(folder);
   ASSERT_TRUE(scan);
-  const Result<Change> meanwhile = change_metadata(folder, {{"tags", {"theirs"}}});
+  const Result<MetadataChange> meanwhile = change_metadata(folder, {{"tags", {"theirs"}}});
   ASSERT_FALSE(meanwhile);
   EXPECT_EQ(meanwhile.error().kind, ErrorKind::kTryAgain);
 }
@@ -119,7 +119,7 @@ TEST(LeftOut, NamesShotsThatAreThere) {
   const Shelf shelf;
   const auto folder = shelf.put("a");
   EXPECT_TRUE(left_out(*read_session(folder)).empty());
-  const Result<Change> change = change_metadata(folder, {{"left_out", Json::array({0, 0})}});
+  const Result<MetadataChange> change = change_metadata(folder, {{"left_out", Json::array({0, 0})}});
   ASSERT_TRUE(change) << change.error().message();
   EXPECT_EQ(words_of(*change), "left_out: 0 of a");
   EXPECT_EQ(left_out(*read_session(folder)), std::vector{0});

@@ -23,16 +23,16 @@ TEST(Shade, ClothAndGgxAreBlendedAsTheyReflect) {
   const simulator::AnisotropicGgx ggx = {alpha, anisotropy, {f0, f0, f0}, simulator::Beneath::kBalanced};
   const simulator::Cloth fuzz = {.alpha = 0.5, .amplitude = 4, .f0 = sheen};
   for (const double weight : {0.0, 0.3, 1.0}) {
-    const SurfacePoint point = {.albedo = albedo,
-                                .alpha = alpha,
-                                .alpha_along = alpha * (1 - anisotropy),
-                                .yarn_deg = 0,
-                                .f0 = f0,
-                                .f0_tint = {1, 1, 1},
-                                .metallic = 0,
-                                .sheen = sheen,
-                                .sheen_alpha = 0.5,
-                                .cloth = weight};
+    const ShadedPoint point = {.albedo = albedo,
+                               .alpha = alpha,
+                               .alpha_along = alpha * (1 - anisotropy),
+                               .yarn_deg = 0,
+                               .f0 = f0,
+                               .f0_tint = {1, 1, 1},
+                               .metallic = 0,
+                               .sheen = sheen,
+                               .sheen_alpha = 0.5,
+                               .cloth = weight};
     for (const double zenith : {10.0, 40.0, 70.0}) {
       for (const double azimuth : {0.0, 65.0, 200.0}) {
         const Vec3 light = toward(zenith, azimuth), view = toward(25, 130);
@@ -49,7 +49,7 @@ TEST(Shade, ClothAndGgxAreBlendedAsTheyReflect) {
 
 TEST(Shade, IsDarkBelowTheSurfaceAndAMetalHasNoDiffusePart) {
   EXPECT_EQ(shaded({}, {0, 0, 1}, {0, 0, -1}, {0, 0, 1}), (Rgb{0, 0, 0}));
-  SurfacePoint metal = {.albedo = {0.9, 0.6, 0.2}, .metallic = 1};
+  ShadedPoint metal = {.albedo = {0.9, 0.6, 0.2}, .metallic = 1};
   metal.alpha = metal.alpha_along = 0.02;
   // Away from its narrow highlight nothing comes back.
   EXPECT_LT(shaded(metal, {0, 0, 1}, toward(60, 0), {0, 0, 1})[0], 0.01);

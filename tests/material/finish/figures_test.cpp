@@ -39,7 +39,7 @@ const WeaveSettings kWeaves[] = {
 
 void print_straightened(const WeaveSettings& weave, Size size, const Straightened& cloth,
                         const Straightened& affine, double taken_s) {
-  const TileOptions options = tile_of(cloth), plain = tile_of(affine);
+  const TilingOptions options = tile_of(cloth), plain = tile_of(affine);
   std::printf(
       "%s, bow %.0f px: %.3f of the relief repeats (affine %.3f), farthest turn %.3f deg (%.3f), %.2f s; ",
       weave.binding.name, weave.bow_px,

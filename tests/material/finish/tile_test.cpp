@@ -16,7 +16,7 @@
 namespace weft::material {
 namespace {
 
-Tile tile_from(const Surface& surface, const TileOptions& options) {
+Tile tile_from(const Surface& surface, const TilingOptions& options) {
   Result<Tile> found = tile(surface, options);
   EXPECT_TRUE(found) << found.error().message();
   return found ? std::move(found).value() : Tile();
@@ -54,7 +54,7 @@ TEST(Tile, ShowsASeamThatIsBlurred) {
   const Overlap overlap = {Axis::kX, 240, 40};
   Cut cut;
   cut.column.assign(200, 20);
-  const TileOptions options;
+  const TilingOptions options;
   Tile found;
   found.surface = joined(felt, overlap, cut, options.feather_px);
   found.height_mm = Image<float>(found.surface.size());
@@ -128,7 +128,7 @@ TEST(Tile, StartsWhereNothingIsMissing) {
 
 TEST(Tile, RefusesWhatCannotBeJoined) {
   const Surface cloth = felt_surface({200, 200});
-  const auto refusal = [&](const TileOptions& options) {
+  const auto refusal = [&](const TilingOptions& options) {
     const Result<Tile> found = tile(cloth, options);
     EXPECT_FALSE(found);
     return found ? "" : found.error().why;

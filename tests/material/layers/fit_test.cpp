@@ -15,7 +15,7 @@ namespace {
 constexpr double kSide_mm = 8;
 
 struct Tile {
-  Field height, slopes;
+  ParameterField height, slopes;
 };
 
 Tile wave_tile(Size size, double side_mm = kSide_mm) {
@@ -29,7 +29,7 @@ Tile wave_tile(Size size, double side_mm = kSide_mm) {
       slopes(x, y, 1) = static_cast<float>(-0.2 * w * std::sin(w * v));
     }
   }
-  return {Field::of(std::move(height)), Field::of(std::move(slopes))};
+  return {ParameterField::of(std::move(height)), ParameterField::of(std::move(slopes))};
 }
 
 Result<LayerFit> fit_of(double layer_mm, double below_mm, Size below, double repeat_mm = 0,
@@ -45,7 +45,7 @@ TEST(Fit, OfALayerOfTheSameGridIsBitForBit) {
   const Tile tile = wave_tile({48, 32});
   const Result<LayerFit> fit = fit_layer({.layer_mm = {8, 8}, .below_mm = {8, 8}, .below = {48, 32}}, true);
   ASSERT_TRUE(fit);
-  const Field same = fitted(tile.slopes, BlendSpace::kSlope, *fit, {48, 32}, 2);
+  const ParameterField same = fitted(tile.slopes, BlendSpace::kSlope, *fit, {48, 32}, 2);
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 48; ++x) ASSERT_EQ(same.map(x, y, 1), tile.slopes.map(x, y, 1)) << x << " " << y;
   }
@@ -56,7 +56,7 @@ TEST(Fit, RepeatsAWholeNumberOfTimesAtTrueSize) {
   const Result<LayerFit> fit = fit_of(8, 24, {384, 384});
   ASSERT_TRUE(fit);
   EXPECT_EQ(fit->across, 3);
-  const Field fine = fitted(tile.height, BlendSpace::kLinear, *fit, {384, 384}, 0);
+  const ParameterField fine = fitted(tile.height, BlendSpace::kLinear, *fit, {384, 384}, 0);
   double worst = 0;
   for (int x = 0; x < 384; ++x) {
     const double u = (x + 0.5) * 24 / 384, v = -0.5 * 24 / 384, w = 2 * kPi / kSide_mm;
@@ -71,7 +71,7 @@ TEST(Fit, OfFewerPixelsKeepsTheMean) {
   const Tile tile = wave_tile({96, 96});
   const Result<LayerFit> fit = fit_of(8, 8, {32, 32});
   ASSERT_TRUE(fit);
-  const Field coarse = fitted(tile.height, BlendSpace::kLinear, *fit, {32, 32}, 0);
+  const ParameterField coarse = fitted(tile.height, BlendSpace::kLinear, *fit, {32, 32}, 0);
   EXPECT_NEAR(means_of(coarse)[0], means_of(tile.height)[0], 1e-6);
 }
 
@@ -80,8 +80,8 @@ TEST(Fit, StretchedSlopesAreThoseOfTheStretchedHeight) {
   const Result<LayerFit> fit = fit_of(8, 24, {768, 768}, 12);
   ASSERT_TRUE(fit) << fit.error().message();
   EXPECT_DOUBLE_EQ(fit->stretch_x, 1.5);
-  const Field height = fitted(tile.height, BlendSpace::kLinear, *fit, {768, 768}, 0);
-  const Field slopes = fitted(tile.slopes, BlendSpace::kSlope, *fit, {768, 768}, 0);
+  const ParameterField height = fitted(tile.height, BlendSpace::kLinear, *fit, {768, 768}, 0);
+  const ParameterField slopes = fitted(tile.slopes, BlendSpace::kSlope, *fit, {768, 768}, 0);
   const double mm = 24.0 / 768;
   for (int x = 10; x < 200; x += 7) {
     EXPECT_NEAR((height.at(x + 1, 40) - height.at(x - 1, 40)) / (2 * mm), slopes.at(x, 40, 0), 2e-3);
@@ -95,8 +95,8 @@ TEST(Fit, ATurnedLayerHasTheSlopesOfItsTurnedHeight) {
   ASSERT_TRUE(fit);
   for (const int turns : {1, 2, 3}) {
     fit->quarter_turns = turns;
-    const Field height = fitted(tile.height, BlendSpace::kLinear, *fit, {96, 96}, 0);
-    const Field slopes = fitted(tile.slopes, BlendSpace::kSlope, *fit, {96, 96}, 0);
+    const ParameterField height = fitted(tile.height, BlendSpace::kLinear, *fit, {96, 96}, 0);
+    const ParameterField slopes = fitted(tile.slopes, BlendSpace::kSlope, *fit, {96, 96}, 0);
     const double mm = kSide_mm / 96;
     for (int x = 5; x < 90; x += 11) {
       EXPECT_NEAR((height.at(x + 1, 20) - height.at(x - 1, 20)) / (2 * mm), slopes.at(x, 20, 0), 2e-3)
@@ -107,8 +107,8 @@ TEST(Fit, ATurnedLayerHasTheSlopesOfItsTurnedHeight) {
   // What was right is up after a quarter turn counter-clockwise: an axis along x lies along y.
   const auto along_x = axis_of(0.4, 0);
   fit->quarter_turns = 1;
-  const Field axis =
-      fitted(Field::same({along_x[0], along_x[1], 0}, 2), BlendSpace::kAxis, *fit, {96, 96}, 0);
+  const ParameterField axis =
+      fitted(ParameterField::same({along_x[0], along_x[1], 0}, 2), BlendSpace::kAxis, *fit, {96, 96}, 0);
   EXPECT_NEAR(axis_from(axis.constant[0], axis.constant[1]).azimuth_deg, 90, 1e-9);
 }
 
@@ -131,8 +131,8 @@ TEST(Fit, IsTheSameForAnyThreads) {
   const Tile tile = wave_tile({61, 47});
   const Result<LayerFit> fit = fit_of(8, 16, {200, 200});
   ASSERT_TRUE(fit);
-  const Field one = fitted(tile.slopes, BlendSpace::kSlope, *fit, {200, 200}, 1);
-  const Field four = fitted(tile.slopes, BlendSpace::kSlope, *fit, {200, 200}, 4);
+  const ParameterField one = fitted(tile.slopes, BlendSpace::kSlope, *fit, {200, 200}, 1);
+  const ParameterField four = fitted(tile.slopes, BlendSpace::kSlope, *fit, {200, 200}, 4);
   for (int y = 0; y < 200; ++y) {
     for (int x = 0; x < 200; ++x) ASSERT_EQ(one.map(x, y, 0), four.map(x, y, 0));
   }

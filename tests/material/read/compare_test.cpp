@@ -51,7 +51,7 @@ class Compare : public testing::Test {
     const Result<MapFile> map = find_map(Parameter::kNormal, value, name);
     EXPECT_TRUE(map) << map.error().message();
     if (!map) return 1;
-    const Result<material::Field> field = read_field(Parameter::kNormal, *map, name);
+    const Result<material::ParameterField> field = read_field(Parameter::kNormal, *map, name);
     EXPECT_TRUE(field) << field.error().message();
     if (!field) return 1;
     double worst = 0;

@@ -159,7 +159,7 @@ TEST_F(ReadBack, MaterialsTakeEachFileOfEachPresetForWhatItIs) {
       const std::string where = file.path.string() + ", " + channel;
       const Result<MapFile> map = find_map(parameter, {{"map", file.path.string()}}, where);
       ASSERT_TRUE(map) << map.error().message();
-      const Result<material::Field> field = read_field(parameter, *map, where);
+      const Result<material::ParameterField> field = read_field(parameter, *map, where);
       ASSERT_TRUE(field) << field.error().message();
       double worst = 0;
       for (int y = 0; y < kSmall.height; ++y) {
@@ -196,11 +196,11 @@ TEST_F(ReadBack, MaterialsTakeTheMapsOfAScanInTheirUnits) {
       EXPECT_TRUE(map) << map.error().message();
       return map ? read_field(parameter, *map, name) : map.error();
     };
-    const Result<material::Field> field = read(Json::object());
+    const Result<material::ParameterField> field = read(Json::object());
     ASSERT_TRUE(field) << name << ": " << field.error().message();
     EXPECT_NEAR(field->at(7, 5), truth_of(parameter, 7, 5, 0), 1e-5) << name;
     if (parameter == kNormal) continue;  // its slopes have a strength of their own
-    const Result<material::Field> half = read({{"scale", 0.5}});
+    const Result<material::ParameterField> half = read({{"scale", 0.5}});
     ASSERT_TRUE(half) << name << ": " << half.error().message();
     EXPECT_NEAR(half->at(7, 5), truth_of(parameter, 7, 5, 0) / 2, 1e-5) << name << ", halved";
   }
@@ -221,7 +221,7 @@ TEST_F(ReadBack, MaterialsScaleWhatIsTheSameAllOverAScanToo) {
     if (scale != 1) value["scale"] = scale;
     const Result<MapFile> map = find_map(Parameter::kSpecular, value, "specular");
     ASSERT_TRUE(map) << map.error().message();
-    const Result<material::Field> field = read_field(Parameter::kSpecular, *map, "specular");
+    const Result<material::ParameterField> field = read_field(Parameter::kSpecular, *map, "specular");
     ASSERT_TRUE(field) << field.error().message();
     EXPECT_NEAR(field->at(7, 5), scale * kSmallF0 / material::kF0OfSpecular, 1e-6) << scale;
   }
@@ -249,7 +249,7 @@ TEST_F(ReadBack, MaterialsAskForMillimetresWhereNobodySaysThem) {
   value["offset"] = -0.145;
   const Result<MapFile> said = find_map(Parameter::kHeight, value, "m.toml: height_mm");
   ASSERT_TRUE(said) << said.error().message();
-  const Result<material::Field> field = read_field(Parameter::kHeight, *said, "");
+  const Result<material::ParameterField> field = read_field(Parameter::kHeight, *said, "");
   ASSERT_TRUE(field) << field.error().message();
   EXPECT_NEAR(field->at(7, 5), small_height_mm(7, 5), 1e-5);
 }

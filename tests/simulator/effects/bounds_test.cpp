@@ -42,12 +42,12 @@ Scene family(Family kind) {
 
 TEST(Bounds, ASmallLedDropsOutByItselfOnSmoothClothAndStaysOnDeep) {
   const Scene smooth = family(Family::kSmooth);
-  std::vector<LeftOut> left_out;
+  std::vector<LeftOutEffect> left_out;
   const EffectSettings on = effects_within(smooth, *rig_of(smooth), 0.01, left_out);
   EXPECT_FALSE(on.finite_led);
   EXPECT_TRUE(on.near_light);
   const auto led = std::find_if(left_out.begin(), left_out.end(),
-                                [](const LeftOut& effect) { return effect.name == "finite_led"; });
+                                [](const LeftOutEffect& effect) { return effect.name == "finite_led"; });
   ASSERT_NE(led, left_out.end());
   EXPECT_THAT(led->why, HasSubstr("a LED of 1.5 mm at 483 mm"));
   EXPECT_THAT(led->why, HasSubstr("no shading changes"));
@@ -73,7 +73,7 @@ TEST(Bounds, AnIdealSceneNeedsNoEffectButItsLights) {
   scene.camera.defects = {};
   scene.lights.led_radius_mm = scene.lights.drift = scene.lights.flicker = scene.lights.stray =
       scene.lights.ambient = 0;
-  std::vector<LeftOut> left_out;
+  std::vector<LeftOutEffect> left_out;
   EffectSettings expected;
   expected.near_light = expected.noise = true;
   EXPECT_EQ(effects_within(scene, *rig_of(scene), 0, left_out), expected);
@@ -86,10 +86,10 @@ TEST(Bounds, OfWhatIsLeftOutAddUpToNoMoreThanAsked) {
   const EffectBounds bounds = bounds_of(scene, rig);
   std::size_t before = 0;
   for (const double to_sigma : {0.0, 0.1, 1.0, 10.0, 100.0, 1e9}) {
-    std::vector<LeftOut> left_out;
+    std::vector<LeftOutEffect> left_out;
     const EffectSettings on = effects_within(scene, rig, to_sigma, left_out);
     double sum = 0;
-    for (const LeftOut& effect : left_out) sum += bounds[number_of(effect.name)].sigma;
+    for (const LeftOutEffect& effect : left_out) sum += bounds[number_of(effect.name)].sigma;
     EXPECT_LE(sum, to_sigma);
     EXPECT_GE(left_out.size(), before);
     before = left_out.size();
@@ -326,13 +326,14 @@ std::optional<Picture> picture_of(const Scene& scene) {
     return pass.name == "nonlinearity" || pass.name == "black pattern";
   });
   const auto keep = [](std::vector<double>& all) {
-    return [&all](const Tile& tile) { all.insert(all.end(), tile.samples.begin(), tile.samples.end()); };
+    return [&all](const PassTile& tile) { all.insert(all.end(), tile.samples.begin(), tile.samples.end()); };
   };
   passes.insert(after_noise, {"keep", "keeps samples", Stage::kShot, keep(picture.before_noise)});
   const std::vector<int> shots = {1, 2, 0};
   PassRunner runner(std::move(*list), {512, 512, 1});
   const Result<void> ran = runner.run(
-      {0, 0, scene.camera.width, scene.camera.height}, shots, {}, [](const Tile&) {}, keep(picture.counted));
+      {0, 0, scene.camera.width, scene.camera.height}, shots, {}, [](const PassTile&) {},
+      keep(picture.counted));
   EXPECT_TRUE(ran) << ran.error().message();
   return picture;
 }

@@ -17,8 +17,8 @@ extern "C" [[gnu::noinline]] bool weft_frame(PassRunner& runner, std::vector<std
   const int led = 1;
   counts.clear();
   return static_cast<bool>(runner.run(
-      {0, 0, kSide, kSide}, {&led, 1}, {}, [](const Tile&) {},
-      [&](const Tile& tile) { counts.insert(counts.end(), tile.counts.begin(), tile.counts.end()); }));
+      {0, 0, kSide, kSide}, {&led, 1}, {}, [](const PassTile&) {},
+      [&](const PassTile& tile) { counts.insert(counts.end(), tile.counts.begin(), tile.counts.end()); }));
 }
 
 Scene scene_of_the_frame() {

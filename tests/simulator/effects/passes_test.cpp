@@ -83,8 +83,8 @@ TEST(Passes, AreCountedByTileAndShot) {
   const std::vector<int> leds = {3, 0, 7};
   std::vector<std::atomic<int>> shots(11);
   ASSERT_TRUE(runner.run(
-      kPatch, leds, {}, [](const Tile&) {},
-      [&](const Tile& tile) { shots[static_cast<std::size_t>(tile.led)]++; }));
+      kPatch, leds, {}, [](const PassTile&) {},
+      [&](const PassTile& tile) { shots[static_cast<std::size_t>(tile.led)]++; }));
   EXPECT_EQ(shots[3], 4);
   EXPECT_EQ(shots[0], 4);
   EXPECT_EQ(shots[1], 0);

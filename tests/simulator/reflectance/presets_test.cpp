@@ -17,9 +17,9 @@ using testing::HasSubstr;
 
 TEST(Presets, AreFoundByNameAndSayWhatEachParameterIs) {
   std::set<std::string> names;
-  for (const Preset& each : presets()) {
+  for (const ClothPreset& each : presets()) {
     names.insert(each.name);
-    const Result<Preset> found = preset(each.name);
+    const Result<ClothPreset> found = preset(each.name);
     ASSERT_TRUE(found) << each.name;
     EXPECT_EQ(found->reflectance, each.reflectance);
     EXPECT_EQ(found->albedo, each.albedo);
@@ -37,7 +37,7 @@ TEST(Presets, AMisspeltNameIsAnErrorThatNamesTheNearestFirst) {
   EXPECT_THAT(why("velvte"), testing::StartsWith("there are velvet, "));
   EXPECT_THAT(why("satn"), testing::StartsWith("there are satin, "));
   EXPECT_THAT(why("dark satin"), testing::StartsWith("there are dark-satin, "));
-  for (const Preset& each : presets()) EXPECT_THAT(why(""), HasSubstr(each.name));
+  for (const ClothPreset& each : presets()) EXPECT_THAT(why(""), HasSubstr(each.name));
 }
 
 TEST(Presets, HaveTheParametersOfTheirTableAndReflectWhatItSays) {
@@ -55,7 +55,7 @@ TEST(Presets, HaveTheParametersOfTheirTableAndReflectWhatItSays) {
         Row{"two-tone-velvet", Cloth{0.35, 4, {0.04, 0.09, 0.2}}, {0.06, 0.01, 0.02}, {0.024, 0.032, 0.072}},
         Row{"satin", AnisotropicGgx{0.45, 0.65, grey(0.05)}, {0.45, 0.4, 0.36}, {0.422, 0.442, 0.572}},
         Row{"dark-satin", AnisotropicGgx{0.35, 0.6, grey(0.05)}, grey(0.06), {0.102, 0.126, 0.285}}}) {
-    const Preset found = preset(row.name).value();
+    const ClothPreset found = preset(row.name).value();
     EXPECT_EQ(found.reflectance, row.reflectance) << row.name;
     EXPECT_EQ(found.albedo, row.albedo) << row.name;
     const double zeniths_deg[] = {0, 60, 85};

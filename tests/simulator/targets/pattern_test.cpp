@@ -24,7 +24,7 @@ Pattern pattern_of(const PatternSettings& settings) {
 }
 
 /// Share of white in a box.
-double white(const Pattern& pattern, const Spot& box) {
+double white(const Pattern& pattern, const TargetSpot& box) {
   return pattern.average(box, kWhiteAndBlack)[1];
 }
 
@@ -59,7 +59,7 @@ TEST(Pattern, TurnsFromBlackToWhiteLinearlyAcrossAnEdge) {
 
 TEST(Pattern, MeanOverABoxIsTheMeanOverItsParts) {
   const Pattern board = pattern_of(CharucoSettings{});
-  const Spot box = {3.3, -7.1, 41.7, 23.9};
+  const TargetSpot box = {3.3, -7.1, 41.7, 23.9};
   double sum = 0;
   for (int j = 0; j < 7; ++j) {
     for (int i = 0; i < 9; ++i) {
@@ -109,8 +109,8 @@ TEST(Pattern, SurvivesSpotsThatAreNoPlaces) {
   const Pattern board = pattern_of(CheckerboardSettings{});
   const double inf = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Spot& spot :
-       {Spot{nan, 0, 1, 1}, Spot{0, inf, 1, 1}, Spot{0, 0, inf, nan}, Spot{0, 0, -1, 1e-300}}) {
+  for (const TargetSpot& spot : {TargetSpot{nan, 0, 1, 1}, TargetSpot{0, inf, 1, 1},
+                                 TargetSpot{0, 0, inf, nan}, TargetSpot{0, 0, -1, 1e-300}}) {
     const double share = white(board, spot);
     EXPECT_TRUE(share >= 0 && share <= 1) << share;
     const double coverage = board.coverage(spot);

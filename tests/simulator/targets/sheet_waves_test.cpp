@@ -96,7 +96,7 @@ TEST(Sheet, DiffersBySeedAndNumberAndNotOtherwise) {
   SheetSettings settings;
   settings.grain_percent = 5;
   settings.waviness_deg = 1;
-  const Spot spot = {3.21, -4.56, 0.05, 0.05};
+  const TargetSpot spot = {3.21, -4.56, 0.05, 0.05};
   const SheetPoint one = PaperSheet(settings, 1, 0).at(spot);
   EXPECT_EQ(one.brightness, PaperSheet(settings, 1, 0).at(spot).brightness);
   EXPECT_NE(one.brightness, PaperSheet(settings, 2, 0).at(spot).brightness);
@@ -111,8 +111,8 @@ TEST(Sheet, StaysFiniteAndQuickForAnySpot) {
   const PaperSheet sheet(settings, 1, 0);
   const double inf = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Spot& spot : {Spot{1e4, -1e4, 1e4, 1}, Spot{1e300, -inf, 1, 1e300}, Spot{0, 0, inf, inf},
-                           Spot{nan, nan, nan, nan}}) {
+  for (const TargetSpot& spot : {TargetSpot{1e4, -1e4, 1e4, 1}, TargetSpot{1e300, -inf, 1, 1e300},
+                                 TargetSpot{0, 0, inf, inf}, TargetSpot{nan, nan, nan, nan}}) {
     EXPECT_NEAR(sheet.at(spot).brightness, 1, 0.35) << spot.u_mm << ", box of " << spot.width_mm;
   }
 }

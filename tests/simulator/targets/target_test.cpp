@@ -130,7 +130,7 @@ TEST(Target, LeansWithItsWaves) {
   TargetSettings settings = posed(30, 0, 0);
   settings.sheet.waviness_deg = 3;
   const Target target = target_of(settings);
-  const Spot spot = {17, 9};
+  const TargetSpot spot = {17, 9};
   const double h = 1e-4;
   const auto place = [&](double u, double v) { return target.at({u, v}).point_mm; };
   const Vec3 along_u = place(spot.u_mm + h, spot.v_mm) - place(spot.u_mm - h, spot.v_mm);

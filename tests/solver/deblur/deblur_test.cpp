@@ -47,7 +47,7 @@ struct Maps {
 
   double sharpen() {
     const auto in = [&](int p) { return View<const float>(planes.plane(p)); };
-    const SolvedRows rows = {
+    const RowsToSharpen rows = {
         {kSide, kSide},        0,     CfaPattern(),  {in(0), in(1), in(2)}, {in(3), in(4), in(5)},
         {in(6), in(7), in(8)}, in(9), status.plane()};
     const SharpenedRows to = {0,

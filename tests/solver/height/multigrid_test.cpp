@@ -140,7 +140,7 @@ TEST(Grid, RestrictionIsTheTransposeOfInterpolation) {
     }
     add_coarser_levels(levels, 1);
     GridLevel &fine = levels[0], &coarse = levels[1];
-    const auto dot = [](const Plane& a, const Plane& b) {
+    const auto dot = [](const PaddedPlane& a, const PaddedPlane& b) {
       double sum = 0;
       for (int y = 0; y < a.size().height; ++y) {
         for (int x = 0; x < a.size().width; ++x) sum += double{a.row(y)[x]} * b.row(y)[x];

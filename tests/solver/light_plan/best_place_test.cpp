@@ -17,7 +17,7 @@ LightPlan plan_of(const Lobe& lobe, double albedo, double relief_deg) {
   return {ten_leds(), {.lobe = lobe, .albedo = albedo, .relief_deg = relief_deg}};
 }
 
-TriedPlace found(const LightPlan& plan, PlanAim aim) {
+TriedPlace found(const LightPlan& plan, LightAim aim) {
   const auto tried = try_places(plan, plan.as_it_is(), free_places(plan.rig()), {});
   EXPECT_TRUE(tried);
   const auto best = best_place(plan, plan.as_it_is(), *tried, aim, {});
@@ -27,16 +27,16 @@ TriedPlace found(const LightPlan& plan, PlanAim aim) {
 
 TEST(BestPlace, IsBesideTheCameraForANarrowLobeOnLevelCloth) {
   const LightPlan plan = plan_of(ggx_of(0.1, 0.04), 0.3, 0);
-  const TriedPlace best = found(plan, PlanAim::kAlpha);
+  const TriedPlace best = found(plan, LightAim::kAlpha);
   EXPECT_LT(best.place.from_camera_deg, 12);
-  const PlannedSigma today = plan.sigma_of(plan.as_it_is());
+  const ForeseenSigma today = plan.sigma_of(plan.as_it_is());
   EXPECT_LT(best.sigma.alpha, today.alpha / 4) << "from " << today.alpha;
 }
 
 TEST(BestPlace, IsBeatenByNoOtherPlace) {
   test::Random random(5);
   const LightPlan plan = plan_of(ggx_of(0.3, 0.04), 0.1, 15);
-  for (const PlanAim aim : {PlanAim::kAll, PlanAim::kNormal, PlanAim::kF0}) {
+  for (const LightAim aim : {LightAim::kAll, LightAim::kNormal, LightAim::kF0}) {
     const TriedPlace best = found(plan, aim);
     const double least = badness(best.sigma, plan.cloth().lobe, aim);
     for (int i = 0; i < 60; ++i) {
@@ -53,17 +53,17 @@ TEST(BestPlace, IsBeatenByNoOtherPlace) {
 }
 
 TEST(BestPlace, OfALedThatStandsTwiceInOnePlaceIsElsewhere) {
-  PlannedRig rig = ten_leds();
+  ForeseenRig rig = ten_leds();
   rig.leds[3] = rig.leds[2];
   const LightPlan plan(rig, {.lobe = ggx_of(0.3, 0.04), .albedo = 0.1, .relief_deg = 15});
-  const auto best = best_move(plan, free_places(rig), PlanAim::kNormal, {});
+  const auto best = best_move(plan, free_places(rig), LightAim::kNormal, {});
   ASSERT_TRUE(best && *best);
   EXPECT_TRUE((*best)->moved == std::size_t{2} || (*best)->moved == std::size_t{3}) << *(*best)->moved;
   EXPECT_LT((*best)->sigma.normal_deg, plan.sigma_of(plan.as_it_is()).normal_deg);
 }
 
 TEST(BestPlace, StandsApartFromEveryLed) {
-  const PlannedRig rig = ten_leds();
+  const ForeseenRig rig = ten_leds();
   const std::vector<LedPlace> places = free_places(rig);
   EXPECT_GT(places.size(), 100U);
   for (const LedPlace place : places) {
@@ -76,7 +76,7 @@ TEST(BestPlace, IsNoneWhereNothingIsTold) {
   const LightPlan plan = plan_of({}, 0.5, 10);
   const auto tried = try_places(plan, plan.as_it_is(), free_places(plan.rig()), {});
   ASSERT_TRUE(tried);
-  const auto best = best_place(plan, plan.as_it_is(), *tried, PlanAim::kAlpha, {});
+  const auto best = best_place(plan, plan.as_it_is(), *tried, LightAim::kAlpha, {});
   ASSERT_TRUE(best);
   EXPECT_FALSE(*best) << "a matt cloth has no roughness";
 }
@@ -86,7 +86,7 @@ TEST(BestPlace, StopsWhenItIsTold) {
   stop.request_stop();
   const LightPlan plan = plan_of(ggx_of(0.3, 0.04), 0.1, 15);
   const auto best =
-      best_move(plan, free_places(plan.rig()), PlanAim::kAll, {.threads = 1, .stop = stop.get_token()});
+      best_move(plan, free_places(plan.rig()), LightAim::kAll, {.threads = 1, .stop = stop.get_token()});
   ASSERT_FALSE(best);
   EXPECT_EQ(best.error().kind, ErrorKind::kInterrupted);
 }

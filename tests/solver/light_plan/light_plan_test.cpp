@@ -20,7 +20,7 @@ namespace {
 
 using test::Random;
 
-PlannedSigma sigma_of(const PlannedRig& rig, const PlannedCloth& cloth, LightSet set = {}) {
+ForeseenSigma sigma_of(const ForeseenRig& rig, const ForeseenCloth& cloth, LightSet set = {}) {
   const LightPlan plan(rig, cloth);
   if (set.leds.empty()) set.leds = plan.as_it_is().leds;
   return plan.sigma_of(set);
@@ -32,7 +32,7 @@ class AllUnknowns {
  public:
   static constexpr Eigen::Index kLobe = 3;
 
-  AllUnknowns(PlannedRig rig, const PlannedCloth& cloth)
+  AllUnknowns(ForeseenRig rig, const ForeseenCloth& cloth)
       : rig_(std::move(rig)), cloth_(cloth), sites_(sites_of(rig_, cloth)) {
     for (const NearLight& led : rig_.leds) turns_.push_back(turns(led.position_mm));
   }
@@ -128,21 +128,21 @@ class AllUnknowns {
     return reading(site, k, at, lobe, rig);
   }
 
-  PlannedRig rig_;
-  PlannedCloth cloth_;
+  ForeseenRig rig_;
+  ForeseenCloth cloth_;
   std::vector<ClothSite> sites_;
   std::vector<std::array<Vec3, 2>> turns_;
   mutable double electrons_ = 0;
 };
 
-PlannedRig ten_leds_over_places() {
-  PlannedRig rig = ten_leds();
+ForeseenRig ten_leds_over_places() {
+  ForeseenRig rig = ten_leds();
   rig.places_mm = {{0, 0, 0}, {70, -40, 0}, {-60, 50, 0}};
   return rig;
 }
 
-PlannedCloth cloth_of_its_sites(double alpha, double albedo) {
-  PlannedCloth cloth = {.lobe = ggx_of(alpha, 0.04), .albedo = albedo, .relief_deg = 12};
+ForeseenCloth cloth_of_its_sites(double alpha, double albedo) {
+  ForeseenCloth cloth = {.lobe = ggx_of(alpha, 0.04), .albedo = albedo, .relief_deg = 12};
   cloth.pixels = 108;
   return cloth;
 }
@@ -151,7 +151,7 @@ PlannedCloth cloth_of_its_sites(double alpha, double albedo) {
 struct Dense {
   double normal_deg, alpha, f0;
 };
-Dense dense_of(const AllUnknowns& all, const Eigen::MatrixXd& covariance, const PlannedCloth& cloth) {
+Dense dense_of(const AllUnknowns& all, const Eigen::MatrixXd& covariance, const ForeseenCloth& cloth) {
   double sum = 0;
   for (std::size_t i = 0; i < all.sites().size(); ++i) {
     const Eigen::Matrix3d own =
@@ -168,7 +168,7 @@ Dense dense_of(const AllUnknowns& all, const Eigen::MatrixXd& covariance, const 
 // The Schur complement over pixels against the inverse of one large matrix.
 TEST(LightPlan, IsTheInverseOfTheWholeInformationWhereTheRigIsFitted) {
   for (const double albedo : {0.05, 0.4}) {
-    const PlannedCloth cloth = cloth_of_its_sites(0.3, albedo);
+    const ForeseenCloth cloth = cloth_of_its_sites(0.3, albedo);
     const AllUnknowns all(ten_leds_over_places(), cloth);
     Eigen::MatrixXd information = all.jacobian().transpose() * all.jacobian();
     const Eigen::Index at = all.of_sites();
@@ -181,7 +181,7 @@ TEST(LightPlan, IsTheInverseOfTheWholeInformationWhereTheRigIsFitted) {
         cloth);
     LightSet fitted;
     fitted.errors = RigErrors::kFitted;
-    const PlannedSigma sigma = sigma_of(ten_leds_over_places(), cloth, fitted);
+    const ForeseenSigma sigma = sigma_of(ten_leds_over_places(), cloth, fitted);
     EXPECT_NEAR(sigma.normal_deg, dense.normal_deg, 1e-3 * dense.normal_deg);
     EXPECT_NEAR(sigma.alpha, dense.alpha, 1e-3 * dense.alpha);
     EXPECT_NEAR(sigma.f0, dense.f0, 1e-3 * dense.f0);
@@ -190,7 +190,7 @@ TEST(LightPlan, IsTheInverseOfTheWholeInformationWhereTheRigIsFitted) {
 }
 
 TEST(LightPlan, IsWhatTheRigsErrorsDoToAFitThatKnowsNothingOfThem) {
-  const PlannedCloth cloth = cloth_of_its_sites(0.3, 0.2);
+  const ForeseenCloth cloth = cloth_of_its_sites(0.3, 0.2);
   const AllUnknowns all(ten_leds_over_places(), cloth);
   const Eigen::MatrixXd j = all.jacobian();
   const Eigen::Index rig = all.of_rig(), own = j.cols() - rig, at = all.of_sites();
@@ -201,7 +201,7 @@ TEST(LightPlan, IsWhatTheRigsErrorsDoToAFitThatKnowsNothingOfThem) {
   const Eigen::MatrixXd noise = information.ldlt().solve(Eigen::MatrixXd::Identity(own, own));
   const Eigen::MatrixXd answer = noise * j.leftCols(own).transpose() * j.rightCols(rig);
   const Dense dense = dense_of(all, noise + answer * all.rig_covariance() * answer.transpose(), cloth);
-  const PlannedSigma sigma = sigma_of(ten_leds_over_places(), cloth);
+  const ForeseenSigma sigma = sigma_of(ten_leds_over_places(), cloth);
   EXPECT_NEAR(sigma.normal_deg, dense.normal_deg, 1e-3 * dense.normal_deg);
   EXPECT_NEAR(sigma.alpha, dense.alpha, 1e-3 * dense.alpha);
   EXPECT_NEAR(sigma.f0, dense.f0, 1e-3 * dense.f0);
@@ -210,8 +210,8 @@ TEST(LightPlan, IsWhatTheRigsErrorsDoToAFitThatKnowsNothingOfThem) {
 // Photographs of a rig that is not where it is thought, with noise, fitted by the solver's own fit.
 TEST(LightPlan, ForetellsTheScatterOfTheFitOverTwoHundredRigsAndDrawsOfNoise) {
   constexpr int kDraws = 200;
-  const PlannedRig rig = ten_leds_over_places();
-  const PlannedCloth cloth = cloth_of_its_sites(0.2, 0.1);
+  const ForeseenRig rig = ten_leds_over_places();
+  const ForeseenCloth cloth = cloth_of_its_sites(0.2, 0.1);
   const AllUnknowns all(rig, cloth);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(all.of_rig());
   const Eigen::VectorXd spread = all.rig_covariance().diagonal().cwiseSqrt();
@@ -245,7 +245,7 @@ TEST(LightPlan, ForetellsTheScatterOfTheFitOverTwoHundredRigsAndDrawsOfNoise) {
   }
   double normal_deg = 0;
   for (const double sum : angle2) normal_deg += std::sqrt(sum / kDraws) / static_cast<double>(angle2.size());
-  const PlannedSigma sigma = sigma_of(rig, cloth);
+  const ForeseenSigma sigma = sigma_of(rig, cloth);
   EXPECT_NEAR(normal_deg / sigma.normal_deg, 1, 0.1) << normal_deg;
   EXPECT_NEAR(std::sqrt(alpha2 / kDraws) / sigma.alpha, 1, 0.25) << std::sqrt(alpha2 / kDraws);
   EXPECT_NEAR(std::sqrt(f02 / kDraws) / sigma.f0, 1, 0.25) << std::sqrt(f02 / kDraws);
@@ -253,7 +253,7 @@ TEST(LightPlan, ForetellsTheScatterOfTheFitOverTwoHundredRigsAndDrawsOfNoise) {
 
 struct Observed {
   const char* what;
-  PlannedCloth cloth;
+  ForeseenCloth cloth;
   bool as_it_is, beside_the_camera, with_polarisers;
 };
 
@@ -281,10 +281,10 @@ TEST(LightPlan, SaysByWhichLightsALobeIsObservable) {
 
 TEST(LightPlan, FittingTheRigNeverErrsMoreThanTakingIt) {
   for (const double alpha : {0.1, 0.3, 0.6}) {
-    const PlannedCloth cloth = {.lobe = ggx_of(alpha, 0.04), .albedo = 0.2, .relief_deg = 10};
+    const ForeseenCloth cloth = {.lobe = ggx_of(alpha, 0.04), .albedo = 0.2, .relief_deg = 10};
     LightSet fitted;
     fitted.errors = RigErrors::kFitted;
-    const PlannedSigma taken = sigma_of(ten_leds(), cloth), least = sigma_of(ten_leds(), cloth, fitted);
+    const ForeseenSigma taken = sigma_of(ten_leds(), cloth), least = sigma_of(ten_leds(), cloth, fitted);
     EXPECT_LT(least.alpha, taken.alpha);
     EXPECT_LT(least.f0, taken.f0);
     EXPECT_LE(least.normal_deg, taken.normal_deg);
@@ -293,23 +293,24 @@ TEST(LightPlan, FittingTheRigNeverErrsMoreThanTakingIt) {
 
 struct Hard {
   const char* what;
-  PlannedRig rig;
-  PlannedCloth cloth;
+  ForeseenRig rig;
+  ForeseenCloth cloth;
   bool is_normal_told, is_lobe_told;
 };
 
 std::vector<Hard> hard_cases() {
-  const PlannedRig three = rig_with({led_from(35, 0), led_from(35, 120), led_from(35, 240)});
-  const PlannedRig two = rig_with({led_from(35, 0), led_from(35, 120)});
-  const PlannedRig one_place = rig_with({led_from(35, 0), led_from(35, 0), led_from(35, 0), led_from(35, 0)});
-  const PlannedRig in_a_plane =
+  const ForeseenRig three = rig_with({led_from(35, 0), led_from(35, 120), led_from(35, 240)});
+  const ForeseenRig two = rig_with({led_from(35, 0), led_from(35, 120)});
+  const ForeseenRig one_place =
+      rig_with({led_from(35, 0), led_from(35, 0), led_from(35, 0), led_from(35, 0)});
+  const ForeseenRig in_a_plane =
       rig_with({led_from(60, 0), led_from(30, 0), led_from(30, 180), led_from(60, 180)});
-  PlannedRig twice = ten_leds(), backwards = ten_leds();
+  ForeseenRig twice = ten_leds(), backwards = ten_leds();
   twice.leds[9] = twice.leds[8];
   for (NearLight& led : backwards.leds) led.aim = -1.0 * led.aim;
-  const PlannedCloth cloth = {.lobe = ggx_of(0.3, 0.04), .albedo = 0.3, .relief_deg = 10};
+  const ForeseenCloth cloth = {.lobe = ggx_of(0.3, 0.04), .albedo = 0.3, .relief_deg = 10};
   const auto with = [&](double alpha, double f0, double albedo, double relief_deg) {
-    return PlannedCloth{.lobe = ggx_of(alpha, f0), .albedo = albedo, .relief_deg = relief_deg};
+    return ForeseenCloth{.lobe = ggx_of(alpha, f0), .albedo = albedo, .relief_deg = relief_deg};
   };
   return {{"three lights", three, cloth, false, false},
           {"three lights on matt cloth", three, {.lobe = {}, .albedo = 0.5, .relief_deg = 10}, true, false},
@@ -336,7 +337,7 @@ TEST(LightPlan, SaysANumberOrNothingInHardCasesAndNeverNaN) {
         LightSet set;
         set.has_polarisers = has_polarisers;
         set.errors = errors;
-        const PlannedSigma sigma = sigma_of(each.rig, each.cloth, set);
+        const ForeseenSigma sigma = sigma_of(each.rig, each.cloth, set);
         for (const double value :
              {sigma.normal_deg, sigma.alpha, sigma.f0, sigma.alpha_along, sigma.axis_deg})
           EXPECT_GT(value, 0) << each.what;
@@ -354,15 +355,15 @@ TEST(LightPlan, SaysANumberOrNothingInHardCasesAndNeverNaN) {
 }
 
 TEST(LightPlan, SaysNothingOfRoughnessAlongAYarnThatALobeHasNot) {
-  const PlannedSigma sigma = sigma_of(ten_leds(), {.lobe = ggx_of(0.3, 0.04)});
+  const ForeseenSigma sigma = sigma_of(ten_leds(), {.lobe = ggx_of(0.3, 0.04)});
   EXPECT_TRUE(std::isinf(sigma.alpha_along) && std::isinf(sigma.axis_deg));
 }
 
 TEST(LightPlan, IsWorseUnderARigThatIsKnownWorse) {
-  const PlannedCloth cloth = {.lobe = ggx_of(0.3, 0.04), .albedo = 0.2, .relief_deg = 10};
-  PlannedRig rough = ten_leds();
+  const ForeseenCloth cloth = {.lobe = ggx_of(0.3, 0.04), .albedo = 0.2, .relief_deg = 10};
+  ForeseenRig rough = ten_leds();
   for (double& each : rough.led_covariance) each *= 100;
-  const PlannedSigma fine = sigma_of(ten_leds(), cloth), worse = sigma_of(rough, cloth);
+  const ForeseenSigma fine = sigma_of(ten_leds(), cloth), worse = sigma_of(rough, cloth);
   EXPECT_GT(worse.normal_deg, 3 * fine.normal_deg);
   EXPECT_GT(worse.alpha, 3 * fine.alpha);
 }

@@ -50,7 +50,7 @@ LightField::Light second_led(std::vector<NearLight> leds) {
   return field->at(1, 1, kMiddle, kMiddle);
 }
 
-TEST(PlannedRig, ErrsAsTheReadingsOfACalibrationDo) {
+TEST(ForeseenRig, ErrsAsTheReadingsOfACalibrationDo) {
   std::vector<NearLight> leds = ten_leds().leds;
   leds[1].aim = normalized({0.1, -0.6, -0.8});
   leds[1].mu = 1.4;
@@ -71,7 +71,7 @@ TEST(PlannedRig, ErrsAsTheReadingsOfACalibrationDo) {
   }
 }
 
-TEST(PlannedRig, TakesWhatIsTypicalOfALedThatNobodyMeasured) {
+TEST(ForeseenRig, TakesWhatIsTypicalOfALedThatNobodyMeasured) {
   const std::vector<NearLight> leds = ten_leds().leds;
   const auto covariance = led_covariance_of(leds, {}, {{"led01.log_flux"}, {1e-4}});
   ASSERT_TRUE(covariance);
@@ -79,7 +79,7 @@ TEST(PlannedRig, TakesWhatIsTypicalOfALedThatNobodyMeasured) {
   EXPECT_NEAR((*covariance)[3 * 30 + 3], kTypicalGain * kTypicalGain + kLeastGain * kLeastGain, 1e-12);
 }
 
-TEST(PlannedRig, RefusesACovarianceThatIsNone) {
+TEST(ForeseenRig, RefusesACovarianceThatIsNone) {
   const std::vector<NearLight> leds = ten_leds().leds;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const std::vector<double>& matrix :
@@ -90,8 +90,8 @@ TEST(PlannedRig, RefusesACovarianceThatIsNone) {
   }
 }
 
-TEST(PlannedRig, FindsAPlaceAgainUnderATiltedCamera) {
-  PlannedRig rig = ten_leds();
+TEST(ForeseenRig, FindsAPlaceAgainUnderATiltedCamera) {
+  ForeseenRig rig = ten_leds();
   rig.camera_mm = {80, -40, 550};
   for (const LedPlace place : {LedPlace{8, 30}, LedPlace{40, 200}, LedPlace{64, 359}}) {
     const NearLight led = led_at(rig, place);

@@ -21,22 +21,22 @@ inline NearLight led_from(double zenith_deg, double azimuth_deg) {
   return led;
 }
 
-inline PlannedRig rig_with(std::vector<NearLight> leds) {
-  PlannedRig rig;
+inline ForeseenRig rig_with(std::vector<NearLight> leds) {
+  ForeseenRig rig;
   rig.leds = std::move(leds);
   rig.led_covariance = typical_led_covariance(rig.leds, rig.places_mm.front());
   return rig;
 }
 
-inline PlannedRig ten_leds() {
+inline ForeseenRig ten_leds() {
   std::vector<NearLight> leds;
   for (int k = 0; k < 10; ++k) leds.push_back(k < 4 ? led_from(35, 90 * k) : led_from(62, 60 * (k - 4) + 15));
   return rig_with(leds);
 }
 
 /// The same, of a frame of 180 x 120 mm.
-inline PlannedRig ten_leds_over_a_frame() {
-  PlannedRig rig = ten_leds();
+inline ForeseenRig ten_leds_over_a_frame() {
+  ForeseenRig rig = ten_leds();
   for (const double x : {-90.0, 0.0, 90.0}) {
     for (const double y : {-60.0, 0.0, 60.0}) {
       if (x != 0 || y != 0) rig.places_mm.push_back({x, y, 0});

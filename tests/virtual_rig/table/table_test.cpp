@@ -18,14 +18,14 @@ namespace {
 using simulator::TargetSettings;
 using testing::HasSubstr;
 
-Table small_table() {
-  Result<Table> table = Table::of(small_scene());
+RigTable small_table() {
+  Result<RigTable> table = RigTable::of(small_scene());
   if (!table) throw std::runtime_error(table.error().message());
   return std::move(*table);
 }
 
-TEST(Table, HasTheClothUntilSomethingElseIsLaidOnIt) {
-  const Table table = small_table();
+TEST(RigTable, HasTheClothUntilSomethingElseIsLaidOnIt) {
+  const RigTable table = small_table();
   const Result<simulator::Scene> cloth = table.with({"cloth"});
   ASSERT_TRUE(cloth) << cloth.error().message();
   EXPECT_EQ(*cloth, small_scene());
@@ -34,7 +34,7 @@ TEST(Table, HasTheClothUntilSomethingElseIsLaidOnIt) {
   EXPECT_FALSE(empty->effects.relief);
 }
 
-TEST(Table, TiltsABoardOnItsLowestCorner) {
+TEST(RigTable, TiltsABoardOnItsLowestCorner) {
   const Result<simulator::Scene> scene =
       small_table().with({"board", "tilt=30", "azimuth=90", "x=5", "height=2"});
   ASSERT_TRUE(scene) << scene.error().message();
@@ -48,15 +48,15 @@ TEST(Table, TiltsABoardOnItsLowestCorner) {
   EXPECT_NEAR(board.centre_mm.z, 3 + 2 + half_mm * 0.5, 1e-9);  // sin 30 degrees
 }
 
-TEST(Table, LaysTheSameSheetOrAnotherOne) {
-  const Table table = small_table();
+TEST(RigTable, LaysTheSameSheetOrAnotherOne) {
+  const RigTable table = small_table();
   const Result<simulator::Scene> same = table.with({"sheet"}), other = table.with({"sheet", "other=1"});
   ASSERT_TRUE(same && other);
   EXPECT_EQ(kind_of(same->targets.front().pattern), simulator::TargetKind::kPaper);
   EXPECT_EQ(kind_of(other->targets.front().pattern), simulator::TargetKind::kTag);
 }
 
-TEST(Table, RefusesWhatItDoesNotKnowWithWhatItDoes) {
+TEST(RigTable, RefusesWhatItDoesNotKnowWithWhatItDoes) {
   struct Case {
     std::vector<std::string> words;
     const char* says;

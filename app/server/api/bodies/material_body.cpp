@@ -83,7 +83,7 @@ std::string text_of(const std::vector<LayerWish>& layers) {
 }
 
 // As it would be once its file is there.
-Result<void> check(const NewMaterial& material) {
+Result<void> check(const NewMaterialBody& material) {
   const MaterialPlace place = {std::string(kLibraryPrefix) + material.key, material.file};
   const Result<MaterialFile> file = parse_material(material.text, place);
   if (!file) return file.error();
@@ -99,7 +99,7 @@ Result<void> check(const NewMaterial& material) {
 
 }  // namespace
 
-Result<NewMaterial> read_material_body(const Json& body, const fs::path& folder) {
+Result<NewMaterialBody> read_material_body(const Json& body, const fs::path& folder) {
   const Result<std::string> name = text_in(body, "name"), inherits = text_in(body, "inherits");
   if (!name) return name.error();
   if (!inherits) return inherits.error();
@@ -116,7 +116,7 @@ Result<NewMaterial> read_material_body(const Json& body, const fs::path& folder)
     layers.push_back(std::move(*layer));
   }
   const std::string head = head_of(*parent);
-  NewMaterial material = {*name, folder / (*name + ".toml"), head + text_of(layers)};
+  NewMaterialBody material = {*name, folder / (*name + ".toml"), head + text_of(layers)};
   if (is_there(material.file)) {
     const Result<std::string> there = read_text(material.file);
     if (!there || !there->starts_with(head))

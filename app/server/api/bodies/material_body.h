@@ -10,7 +10,7 @@
 namespace weft::app {
 
 /// A material that differs from another by its layers, as a file of the user's library.
-struct NewMaterial {
+struct NewMaterialBody {
   std::string key;  ///< of the library
   std::filesystem::path file;
   std::string text;  ///< weft.material/1
@@ -21,6 +21,6 @@ struct NewMaterial {
 /// name stay above those that it names. Nothing is written. kUsage with the field and its rule; kNoInput
 /// where the other is not there; kCannotCreate where a material of this name is, unless it was made by this
 /// call from the same one; what resolve_material() says of the result.
-Result<NewMaterial> read_material_body(const Json& body, const std::filesystem::path& folder);
+Result<NewMaterialBody> read_material_body(const Json& body, const std::filesystem::path& folder);
 
 }  // namespace weft::app

@@ -34,7 +34,7 @@ Result<std::vector<std::filesystem::path>> all_folders(LibraryService& library,
   query->limit = kPageOfSessions;
   std::vector<std::filesystem::path> folders;
   do {
-    const Result<library::Page> page = library.find(*query);
+    const Result<library::CataloguePage> page = library.find(*query);
     if (!page) return page.error();
     for (const library::Entry& entry : page->entries) folders.push_back(entry.folder);
     query->after = page->after;

@@ -15,7 +15,7 @@ Result<Reply> list_tags(const RigParts& parts) {
   return json_reply({{"tags", std::move(list)}});
 }
 
-Result<Reply> reply_of(const Result<library::Change>& change) {
+Result<Reply> reply_of(const Result<library::MetadataChange>& change) {
   if (!change) return change.error();
   return json_reply({{"session", change->folder.stem().string()},
                      {"before", change->before},
@@ -41,7 +41,8 @@ Result<Reply> change_session(const RigParts& parts, const Call& call) {
   return reply_of(parts.library.change(session->folder, *body, provided, ""));
 }
 
-Route step_back(const RigParts& parts, const char* path, Result<library::Change> (LibraryService::*step)()) {
+Route step_back(const RigParts& parts, const char* path,
+                Result<library::MetadataChange> (LibraryService::*step)()) {
   return {"POST", path, [&parts, step](const Call& call) -> Result<Reply> {
             if (const Result<Json> body = parse_body(call.body); !body) return body.error();
             return reply_of((parts.library.*step)());

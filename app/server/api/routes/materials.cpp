@@ -26,7 +26,7 @@ Result<Reply> materials(const Call&) {
 Result<Reply> new_material(const Call& call) {
   const Result<Json> body = parse_body(call.body);
   if (!body) return body.error();
-  const Result<NewMaterial> material = read_material_body(*body, user_materials_folder());
+  const Result<NewMaterialBody> material = read_material_body(*body, user_materials_folder());
   if (!material) return material.error();
   if (Result<void> ok = make_writable_folder(material->file.parent_path()); !ok) return std::move(ok).error();
   if (Result<void> ok = write_file(material->file, material->text); !ok) return std::move(ok).error();

@@ -16,7 +16,7 @@ Result<Reply> whole_status(const RigParts& parts) {
   const std::string session = parts.keeper.session();
   library::Query query = unfinished_of(parts.rig);
   query.limit = kMostResumable;
-  const Result<library::Page> unfinished = parts.library.find(query);
+  const Result<library::CataloguePage> unfinished = parts.library.find(query);
   if (!unfinished) return unfinished.error();
   Json resumable = Json::array();
   for (const library::Entry& each : unfinished->entries) {

@@ -8,7 +8,7 @@
 namespace weft::app {
 namespace {
 
-std::string kind_of(const capture::PlannedShot& shot, const capture::ShotList& list) {
+std::string kind_of(const capture::DueShot& shot, const capture::ShotList& list) {
   const bool is_other_state = !list.polariser.empty() && shot.polariser != list.polariser.front();
   return shot.role == ShotRole::kLit && is_other_state ? "polariser" : name_of(shot.role);
 }
@@ -37,7 +37,7 @@ std::vector<BillLine> bill_of(const capture::ScanRequest& request, std::optional
   const capture::ShotList list = {request.leds, request.repeat, request.bracket, request.polariser.states,
                                   request.below};
   std::map<std::string, int> shots;
-  for (const capture::PlannedShot& shot : capture::plan_shots(list, {}, {})) ++shots[kind_of(shot, list)];
+  for (const capture::DueShot& shot : capture::plan_shots(list, {}, {})) ++shots[kind_of(shot, list)];
   std::vector<BillLine> bill;
   for (const char* what : {"lit", "dark", "repeat", "bracket", "polariser", "below"}) {
     if (!shots.contains(what)) continue;

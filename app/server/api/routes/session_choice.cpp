@@ -39,7 +39,7 @@ Result<std::vector<library::Entry>> unfinished_of_cloth(const std::string& fabri
   library::Query query = unfinished_of(rig);
   query.fabric = fabric;
   query.limit = kMostUnfinished;
-  Result<library::Page> page = library.find(query);
+  Result<library::CataloguePage> page = library.find(query);
   if (!page) return std::move(page).error();
   std::vector<library::Entry> found = std::move(page->entries);
   if (found.empty()) return found;

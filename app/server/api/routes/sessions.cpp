@@ -51,7 +51,7 @@ Json thumbnail_of(const library::Entry& entry) {
 Result<Reply> find_sessions(const RigParts& parts, const Call& call) {
   const Result<library::Query> query = session_query(call.query);
   if (!query) return query.error();
-  const Result<library::Page> page = parts.library.find(*query);
+  const Result<library::CataloguePage> page = parts.library.find(*query);
   if (!page) return page.error();
   Json sessions = Json::array();
   for (const library::Entry& entry : page->entries) {

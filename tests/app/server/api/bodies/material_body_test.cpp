@@ -39,7 +39,7 @@ mask = 0.25
   }
   void TearDown() override { unsetenv("XDG_DATA_HOME"); }
 
-  static Result<NewMaterial> read(const std::string& body) {
+  static Result<NewMaterialBody> read(const std::string& body) {
     return read_material_body(Json::parse(body), user_materials_folder());
   }
   static std::string layers_of(const std::string& key) {
@@ -58,7 +58,7 @@ mask = 0.25
 };
 
 TEST_F(MaterialBody, BecomesAFileThatInheritsWithItsLayersInTheirOrder) {
-  const Result<NewMaterial> made = read(
+  const Result<NewMaterialBody> made = read(
       R"({"name": "clean", "inherits": "dusty", "layers": [{"name": "stain", "alpha": 0.75}, {"name": "dust"}]})");
   ASSERT_TRUE(made) << made.error().message();
   EXPECT_EQ(made->file, user_materials_folder() / "clean.toml");
@@ -67,7 +67,7 @@ TEST_F(MaterialBody, BecomesAFileThatInheritsWithItsLayersInTheirOrder) {
   EXPECT_THAT(layers_of("dusty"), HasSubstr("dust")) << "the other stays as it was";
   EXPECT_THAT(layers_of("clean"), testing::MatchesRegex("stain .*0.75.*; dust .*0.5.*; "));
 
-  const Result<NewMaterial> again =
+  const Result<NewMaterialBody> again =
       read(R"({"name": "clean", "inherits": "dusty", "layers": [{"name": "dust", "remove": true}]})");
   ASSERT_TRUE(again) << again.error().message();
   ASSERT_TRUE(write_file(again->file, again->text));
@@ -75,7 +75,7 @@ TEST_F(MaterialBody, BecomesAFileThatInheritsWithItsLayersInTheirOrder) {
 }
 
 TEST_F(MaterialBody, ReplacesNothingThatAPersonWrote) {
-  const Result<NewMaterial> made = read(R"({"name": "dusty", "inherits": "cloth:wool", "layers": []})");
+  const Result<NewMaterialBody> made = read(R"({"name": "dusty", "inherits": "cloth:wool", "layers": []})");
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().kind, ErrorKind::kCannotCreate);
 }
@@ -87,12 +87,12 @@ TEST_F(MaterialBody, SaysWhatIsWrongWithIt) {
         R"({"name": "a", "inherits": "dusty", "layers": [{"name": "dust", "alpha": 2}]})",
         R"({"name": "a", "inherits": "dusty", "layers": [{"alpha": 0.5}]})",
         R"({"name": "a", "inherits": "dusty", "layers": [{"name": "dust", "mask": 1}]})"}) {
-    const Result<NewMaterial> made = read(wrong);
+    const Result<NewMaterialBody> made = read(wrong);
     ASSERT_FALSE(made) << wrong;
     EXPECT_EQ(made.error().kind, ErrorKind::kUsage) << wrong;
   }
   EXPECT_EQ(read(R"({"name": "a", "inherits": "none", "layers": []})").error().kind, ErrorKind::kNoInput);
-  const Result<NewMaterial> absent =
+  const Result<NewMaterialBody> absent =
       read(R"({"name": "a", "inherits": "dusty", "layers": [{"name": "dust\"\n[surface]", "alpha": 0}]})");
   ASSERT_FALSE(absent) << "a layer that is not there: " << absent->text;
   EXPECT_EQ(absent.error().kind, ErrorKind::kBadData);
