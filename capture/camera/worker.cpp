@@ -3,20 +3,24 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
+#include <deque>
 #include <future>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "capture/camera/camera_profile.h"
 #include "capture/camera/camera_setup.h"
 #include "capture/camera/gphoto_camera.h"
-#include "capture/camera/request_lines.h"
 #include "capture/camera/worker_lines.h"
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
@@ -25,6 +29,95 @@
 
 namespace weft::capture {
 namespace {
+
+/// The lines that arrive on a descriptor, read by a thread of its own, so that the end of the parent is
+/// noticed while a call into libgphoto2 blocks. (PR_SET_PDEATHSIG would follow the thread that started this
+/// process, not the parent.)
+class RequestLines {
+ public:
+  explicit RequestLines(int in);
+  /// Within 3 s of the end of the input: the process ends otherwise.
+  ~RequestLines();
+  RequestLines(const RequestLines&) = delete;
+  RequestLines& operator=(const RequestLines&) = delete;
+
+  /// Waits for the next line; nothing at the end. A line that is too long comes as an empty one.
+  std::optional<std::string> next();
+  /// Whether the input has ended.
+  bool ended() const;
+
+ private:
+  void read_all(int in);
+  void take(std::string_view bytes);
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::string> lines_;
+  std::string part_;
+  bool too_long_ = false;
+  bool ended_ = false;
+  bool done_ = false;  // nobody asks any more
+  std::thread thread_;
+};
+
+constexpr std::size_t kLongestLine = std::size_t{64} << 10;
+constexpr auto kPatience = std::chrono::seconds(3);
+
+RequestLines::RequestLines(int in) : thread_([this, in] { read_all(in); }) {}
+
+RequestLines::~RequestLines() {
+  {
+    const std::lock_guard lock(mutex_);
+    done_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+std::optional<std::string> RequestLines::next() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return ended_ || !lines_.empty(); });
+  // What the parent asked for and will not hear of any more is left undone.
+  if (ended_) return {};
+  std::string line = std::move(lines_.front());
+  lines_.pop_front();
+  return line;
+}
+
+bool RequestLines::ended() const {
+  const std::lock_guard lock(mutex_);
+  return ended_;
+}
+
+void RequestLines::read_all(int in) {
+  std::array<char, 4096> block;
+  for (;;) {
+    const ssize_t n = ::read(in, block.data(), block.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) break;
+    take({block.data(), static_cast<std::size_t>(n)});
+  }
+  std::unique_lock lock(mutex_);
+  ended_ = true;
+  changed_.notify_all();
+  if (!changed_.wait_for(lock, kPatience, [this] { return done_; })) ::_exit(1);
+}
+
+void RequestLines::take(std::string_view bytes) {
+  const std::lock_guard lock(mutex_);
+  for (const char c : bytes) {
+    if (c == '\n') {
+      lines_.push_back(too_long_ ? std::string() : std::move(part_));
+      part_.clear();
+      too_long_ = false;
+    } else if (part_.size() == kLongestLine) {
+      too_long_ = true;
+    } else {
+      part_ += c;
+    }
+  }
+  changed_.notify_all();
+}
 
 using Steady = std::chrono::steady_clock;
 

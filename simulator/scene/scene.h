@@ -18,6 +18,7 @@
 #include "simulator/geometry/geometry_settings.h"
 #include "simulator/geometry/print.h"
 #include "simulator/reflectance/reflectance.h"
+#include "simulator/scene/scene.h"
 #include "simulator/spectra/spectrum.h"
 #include "simulator/targets/target_settings.h"
 
@@ -25,6 +26,18 @@
 // docs/reference/scenes.md lists every key; millimetres and the rig frame throughout.
 
 namespace weft::simulator {
+
+// What the keys of a scene may not say together. Internal to simulator/scene.
+
+/// A combination of keys that makes no sense.
+struct SceneRule {
+  const char* key;  ///< the one that the rule speaks of, with dots
+  bool (*is_broken)(const Scene&);
+  const char* why;
+  const char* remedy;
+};
+
+std::span<const SceneRule> scene_rules();
 
 /// Light that enters a yarn and leaves beside where it entered.
 struct YarnTranslucency {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/axis.h"
+#include "report/plot_svg.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

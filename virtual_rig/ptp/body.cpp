@@ -2,6 +2,7 @@
 #include "virtual_rig/ptp/body.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,23 @@
 
 namespace weft::virtual_rig::ptp {
 namespace {
+
+// What both serve, and last what a body with live view does: libgphoto2 takes that for a body's kind.
+constexpr std::array<std::uint16_t, 28> kOperations = {kGetDeviceInfo,      kOpenSession,
+                                                       kCloseSession,       kGetStorageIds,
+                                                       kGetStorageInfo,     kGetNumObjects,
+                                                       kGetObjectHandles,   kGetObjectInfo,
+                                                       kGetObject,          kGetThumb,
+                                                       kDeleteObject,       kInitiateCapture,
+                                                       kGetDevicePropDesc,  kGetDevicePropValue,
+                                                       kSetDevicePropValue, kGetPartialObject,
+                                                       kCaptureRecInSdram,  kAfDrive,
+                                                       kChangeCameraMode,   kDeleteSdramImage,
+                                                       kGetEvent,           kDeviceReady,
+                                                       kGetVendorPropCodes, kAfCaptureSdram,
+                                                       kStartLiveView,      kEndLiveView,
+                                                       kGetLiveViewImage,   kInitiateCaptureRecInMedia};
+constexpr std::size_t kWithoutLiveView = kOperations.size() - 4;
 
 constexpr std::uint32_t kAnyStore = 0xffffffff, kAtRoot = 0xffffffff;
 
@@ -40,6 +58,45 @@ Delivery delivery_of(PtpFault in_transfer) {
 }
 
 }  // namespace
+
+void Timeline::at(RigClock::time_point when, std::function<void()> action) {
+  {
+    const std::lock_guard lock(mutex_);
+    actions_.emplace(when, std::move(action));
+  }
+  changed_.notify_one();
+}
+
+void Timeline::stop() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Timeline::run(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    if (actions_.empty()) {
+      changed_.wait(lock, stop, [this] { return !actions_.empty(); });
+      continue;
+    }
+    const RigClock::time_point due = actions_.begin()->first;
+    if (RigClock::now() < due) {
+      changed_.wait_until(lock, stop, due, [&] { return actions_.begin()->first < due; });
+      continue;
+    }
+    const std::function<void()> action = std::move(actions_.extract(actions_.begin()).mapped());
+    lock.unlock();
+    action();
+    lock.lock();
+  }
+}
+
+const BodyFacts& facts_of(CameraBody body) {
+  static constexpr BodyFacts kD5100 = {"D5100", 0x0429, std::chrono::milliseconds(10), kOperations};
+  static constexpr BodyFacts kD80 = {"D80", 0x0412, std::chrono::milliseconds(80),
+                                     std::span(kOperations).first(kWithoutLiveView)};
+  return body == CameraBody::kD80 ? kD80 : kD5100;
+}
 
 PtpBody::PtpBody(const VirtualCameraOptions& options, DevelopExposure develop)
     : options_(options),

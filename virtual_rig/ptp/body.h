@@ -1,24 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <initializer_list>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
+#include <thread>
 
-#include "virtual_rig/ptp/body_facts.h"
+#include "virtual_rig/board/lit_log.h"
 #include "virtual_rig/ptp/dataset.h"
 #include "virtual_rig/ptp/faults.h"
 #include "virtual_rig/ptp/link.h"
 #include "virtual_rig/ptp/properties.h"
-#include "virtual_rig/ptp/timeline.h"
 #include "virtual_rig/ptp/virtual_camera.h"
 
 namespace weft::virtual_rig::ptp {
+
+/// A thread that does things when their time has come, one after the other. What has not begun when it ends
+/// is not done.
+class Timeline {
+ public:
+  Timeline() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+  void at(RigClock::time_point when, std::function<void()> action);
+  /// Waits for what it is doing.
+  void stop();
+
+ private:
+  void run(const std::stop_token& stop);
+
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::multimap<RigClock::time_point, std::function<void()>> actions_;
+  std::jthread thread_;  // last: ends before what it uses
+};
+
+/// Where the bodies differ.
+struct BodyFacts {
+  const char* model;  ///< as DeviceInfo has it
+  std::uint16_t usb_product;
+  std::chrono::milliseconds shutter_lag;  ///< from the command until the shutter opens
+  std::span<const std::uint16_t> operations;
+};
+
+const BodyFacts& facts_of(CameraBody body);
 
 /// A body behind its sockets: session, properties, pictures and exposures in real time. Links bring it
 /// operations; it does not know which. Safe from any thread.

@@ -1,19 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/server/api/api.h"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "app/server/api/bodies/job_kinds.h"
 #include "app/server/api/bodies/requests.h"
 #include "app/server/api/bodies/scan_body.h"
 #include "app/server/api/descriptions.h"
-#include "app/server/api/reply_schemas.h"
 #include "app/server/api/short_schema.h"
+#include "app/server/http/error_reply.h"
+#include "app/server/jobs/job.h"
+#include "core/base/error_kind.h"
+#include "core/base/json_document.h"
 #include "core/base/sha256.h"
+#include "core/describe/error_json.h"
+#include "core/describe/field_json.h"
 
 namespace weft::app {
 namespace {
+
+constexpr SchemaOf kWritten = SchemaOf::kWritten;
+
+Json error_schema() {
+  std::vector<std::string_view> codes = error_codes();
+  std::ranges::sort(codes);
+  codes.erase(std::ranges::unique(codes).begin(), codes.end());
+  Json schema = schema_of<Error>(kWritten);
+  schema["properties"]["kind"]["enum"] = error_kind_names();
+  schema["properties"]["code"] = {
+      {"type", "string"},
+      {"enum", std::move(codes)},
+      {"description",
+       "What this server decided, by a word that stays; absent where another part of weft failed"}};
+  return schema;
+}
+
+/// Components of OpenAPI: documents of replies that describe their fields.
+Json reply_schemas() {
+  return {{"Error", error_schema()}, {"Job", schema_of<JobStatus>(kWritten)}};
+}
 
 Json content_of(const Json& schema) {
   return {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/response/light_ratios.h"
+#include "calibration/response/response_measurement.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "capture/camera/camera_values.h"
+#include "capture/camera/camera_setup.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

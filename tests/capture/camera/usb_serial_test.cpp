@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "capture/camera/usb_serial.h"
+#include "capture/camera/camera_setup.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "material/assets/shade.h"
+#include "material/assets/material_preview.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/geometry/fibres.h"
+#include "simulator/geometry/weave.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "simulator/geometry/cylinder.h"
+#include "simulator/geometry/scene_surface.h"
 
 namespace weft::simulator {
 namespace {

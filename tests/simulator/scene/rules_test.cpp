@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the keys of a scene may not say together.
-#include "simulator/scene/scene_rules.h"
+#include "simulator/scene/scene.h"
 
 #include "tests/simulator/scene/scenes.h"
 

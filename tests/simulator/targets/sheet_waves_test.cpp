@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/targets/sheet_waves.h"
+#include "simulator/targets/target.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <random>
 
 #include "core/solve/solve_record.h"
-#include "solver/deblur/filter.h"
 #include "solver/deblur/sharpen.h"
 
 namespace weft::solver {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/height/multigrid.h"
+#include "solver/height/height.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/registration/cloth_shift.h"
+#include "solver/registration/registration.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "tests/capture/board/desk.h"
-#include "virtual_rig/board/pseudo_terminal.h"
+#include "virtual_rig/board/virtual_board.h"
 #include "virtual_rig/terminal/modem_lines.h"
 #include "virtual_rig/terminal/port_name.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "virtual_rig/ptp/packet.h"
+#include "virtual_rig/ptp/network_link.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace weft::virtual_rig;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Strangers at the camera's port: nothing that they send ends it.
-#include "virtual_rig/ptp/packet.h"
+#include "virtual_rig/ptp/network_link.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/server/view/pixel_table.h"
+#include "app/server/view/pixel_tables.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/oracles/rays/ray_lattice.h"
+#include "bench/oracles/rays/gather.h"
 
 #include <gtest/gtest.h>
 
