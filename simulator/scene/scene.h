@@ -27,18 +27,6 @@
 
 namespace weft::simulator {
 
-// What the keys of a scene may not say together. Internal to simulator/scene.
-
-/// A combination of keys that makes no sense.
-struct SceneRule {
-  const char* key;  ///< the one that the rule speaks of, with dots
-  bool (*is_broken)(const Scene&);
-  const char* why;
-  const char* remedy;
-};
-
-std::span<const SceneRule> scene_rules();
-
 /// Light that enters a yarn and leaves beside where it entered.
 struct YarnTranslucency {
   double share = 0;    ///< of the light that falls on the yarn, 0 to 0.9
@@ -261,5 +249,15 @@ Result<void> check_scene(const Scene& scene);
 /// The scene as TOML with its defaults spelled out; parse_scene gives the same scene back, but for pictures.
 /// Spectra and measured LEDs are written as numbers, pictures by their names.
 std::string to_toml(const Scene& scene);
+
+/// A combination of keys that makes no sense; for simulator/scene alone.
+struct SceneRule {
+  const char* key;  ///< the one that the rule speaks of, with dots
+  bool (*is_broken)(const Scene&);
+  const char* why;
+  const char* remedy;
+};
+
+std::span<const SceneRule> scene_rules();
 
 }  // namespace weft::simulator
