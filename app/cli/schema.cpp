@@ -8,10 +8,12 @@
 
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
+#include "app/cli/schemas/calls_page.h"
 #include "app/cli/schemas/document_schemas.h"
 #include "app/cli/schemas/documents_page.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
+#include "app/server/api/api.h"
 #include "core/base/files.h"
 #include "core/describe/fields.h"
 #include "simulator/scene/scene_page.h"
@@ -46,11 +48,13 @@ Result<int> write_all(const fs::path& folder) {
 Result<int> print_page(const std::string& subject) {
   if (subject == "scenes") {
     print(simulator::scene_page());
+  } else if (subject == "calls") {
+    print(calls_page(api_description()));
   } else if (subject.empty() || subject == "documents") {
     print(documents_page());
   } else {
     return Error{ErrorKind::kUsage, "there is no such page", "--page",
-                 rule_of_words({"documents", "scenes"}, subject), "name one of them"};
+                 rule_of_words({"documents", "scenes", "calls"}, subject), "name one of them"};
   }
   return kDone;
 }
@@ -76,9 +80,10 @@ Run add_schema(Options& options) {
   const auto a = std::make_shared<SchemaArguments>();
   options.add("DOCUMENT", &a->document, "Of this document, such as weft.solve; absent: lists all");
   options.add("--output", &a->folder, "Write all of them into this folder instead");
-  options.add_flag("--page", &a->page,
-                   "Print a page of Markdown instead: of the fields of all of them, or with the word scenes "
-                   "of the keys of scenes");
+  options.add_flag(
+      "--page", &a->page,
+      "Print a page of Markdown instead: of the fields of all of them, with the word scenes of the "
+      "keys of scenes, with the word calls of what the server answers");
   return [a](const CommonArguments&) { return print_schemas(*a); };
 }
 

@@ -43,6 +43,18 @@ Json reply_schemas() {
   return {{"Error", error_schema()}, {"Job", schema_of<JobStatus>(kWritten)}};
 }
 
+/// Each with its part of the description; calls are tagged with its name.
+constexpr std::pair<const char*, const char* (*)()> kResources[] = {
+    {"batches", batches_description}, {"calibrations", calibrations_description},
+    {"control", control_description}, {"devices", devices_description},
+    {"events", events_description},   {"exports", exports_description},
+    {"frames", frames_description},   {"jobs", jobs_description},
+    {"library", library_description}, {"login", login_description},
+    {"maps", maps_description},       {"materials", materials_description},
+    {"rig", rig_description},         {"scan", scan_description},
+    {"server", server_description},   {"sessions", sessions_description},
+    {"solves", solves_description},   {"virtual rig", virtual_rig_description}};
+
 Json content_of(const Json& schema) {
   return {
       {"application/json", {{"schema", {{"$ref", "#/components/schemas/" + schema.get<std::string>()}}}}}};
@@ -129,13 +141,11 @@ Json api_description() {
   const Json parameters = whole["parameters"];
   whole.erase("parameters");
   Json paths = Json::object(), schemas = whole["components"]["schemas"];
-  for (const char* resource :
-       {batches_description(), calibrations_description(), control_description(), devices_description(),
-        events_description(), exports_description(), frames_description(), jobs_description(),
-        library_description(), login_description(), maps_description(), materials_description(),
-        rig_description(), scan_description(), server_description(), sessions_description(),
-        solves_description(), virtual_rig_description()}) {
-    const Json part = Json::parse(resource);
+  for (const auto& [name, description] : kResources) {
+    Json part = Json::parse(description());
+    for (Json& item : part["paths"]) {
+      for (Json& operation : item) operation["tags"] = Json::array({name});
+    }
     paths.update(part["paths"]);
     schemas.update(part["schemas"]);
   }
