@@ -10,7 +10,6 @@
 #include <fstream>
 #include <iostream>
 #include <map>
-#include <regex>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -170,35 +169,23 @@ TEST_F(PageCommands, OfTheReadmeRunInAFolderOfWhatTheyName) {
         << ran[i].said;
 }
 
-// What curl wrote: in the answer, or in the file that it was told.
-std::string answer_of(const std::string& command, const Ran& ran, const fs::path& folder) {
-  const std::size_t option = command.rfind(" -o ");
-  return option == command.npos ? ran.said : bytes_of(folder / command.substr(option + 4));
-}
-
 TEST_F(PageCommands, OfTheServerAreAnsweredByOneOfARelativeRigFile) {
   put_bytes(work_ / "north.toml",
             "name = \"north\"\n[board]\nport = \"/dev/no-board\"\n[camera]\nport = \"ptpip:127.0.0.1:1:1\"\n"
             "[scan]\ncalibration = \"base\"\n[daemon]\nport = 0\n");
   simulate(scene_named("twill", {224, 160}), work_ / "scans" / "satin-3.weft");
-  fs::copy(work_ / "scans" / "satin-3.weft", work_ / "scans" / "2026-11-21_satin-red_001.weft",
-           fs::copy_options::recursive);
   fs::copy(work_ / "scans" / "satin-3.weft" / "calibration", work_ / "base", fs::copy_options::recursive);
 
   const std::vector<std::string> of_page = runnable(
       "docs/http.md", {{"## A session with curl", "test_curl_session does"},
                        {"## Who may come in", "it wants a daemon with a token, as test_curl_session has it"},
                        {"# systemctl", "it wants a service manager"}});
-  ASSERT_GT(of_page.size(), 15U);
+  ASSERT_GT(of_page.size(), 4U);
   ASSERT_TRUE(of_page.front().starts_with("weft serve")) << of_page.front();
   std::vector<std::string> commands = serving(of_page.front(), "north.state");
-  commands.emplace_back(
-      "weft solve scans/satin-3.weft --quality fast -q; solve=$(ls scans/satin-3.weft/solve)");
   const std::size_t first = commands.size();
   for (std::size_t i = 1; i < of_page.size(); ++i) {
-    // Addresses in the page's single quotes are filled in as well.
-    std::string command = std::regex_replace(of_page[i], std::regex("'(http:[^']*)'"), "\"$1\"");
-    command = with(command, {{"127.0.0.1:8470", "$at"}, {"d043ba17c8aaa1fc", "$solve"}});
+    std::string command = with(of_page[i], {{"127.0.0.1:8470", "$at"}});
     if (command.find("/events") != command.npos) command += " --max-time 1 || true";
     commands.push_back(command);
   }
@@ -207,13 +194,9 @@ TEST_F(PageCommands, OfTheServerAreAnsweredByOneOfARelativeRigFile) {
   for (std::size_t i = 0; i < commands.size(); ++i) {
     ASSERT_EQ(ran[i].exit_code, 0) << "$ " << commands[i] << '\n' << ran[i].said;
     if (i < first) continue;
-    const std::string said = answer_of(commands[i], ran[i], work_.path());
+    const std::string& said = ran[i].said;
     const Json answer = Json::parse(said, nullptr, false);
-    // There is no board here, and the session of the page is complete.
-    const bool may_be_refused = commands[i].find("/api/v1/scan") != std::string::npos;
-    EXPECT_TRUE(!may_be_refused || answer.is_object()) << "$ " << commands[i] << '\n' << said;
-    EXPECT_TRUE(may_be_refused || !answer.is_object() || !answer.contains("error") ||
-                answer["error"].is_null())
+    EXPECT_TRUE(!answer.is_object() || !answer.contains("error") || answer["error"].is_null())
         << "$ " << commands[i] << '\n'
         << said;
     EXPECT_GT(said.size(), 2U) << "$ " << commands[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the daemon writes tiles for programs (docs/http.md, "Maps to look at"), and what WebGL is told of them.
+// How the daemon writes tiles for programs (docs/reference/calls.md, solves), and what WebGL is told of them.
 import type {Size} from './view';
 
 /** normal: RGB10_A2 with 1022 steps; color: three half floats; scalar: one; flags: a byte. */
