@@ -353,7 +353,7 @@ Result<Json> held_against_real(const StudyOptions& options) {
 }
 
 // A million sessions of 16 megapixels on 100 nodes of 8 cores, with what was measured of them and of Slurm
-// (docs/scale.md).
+// (docs/archives.md).
 FarmModel million() {
   FarmModel model;
   model.nodes = 100;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # many.sh BUILD [TASKS]: so many small tasks (200) on a Slurm of three nodes on this machine, of which one dies after a
-# third of them. Prints how long it took, and what a simulation needs to know (docs/scale.md): how long the first thirty
+# third of them. Prints how long it took, and what a simulation needs to know (docs/archives.md): how long the first thirty
 # tasks took by Slurm's own clock, and how long a node was theirs for each, with what Slurm takes to start the next.
 set -uo pipefail
 build=$(cd "$1" && pwd)
