@@ -12,7 +12,7 @@ import {followAddress, place} from './state/address';
 import {isDark} from './state/dark';
 import {askForms} from './state/forms';
 import {followKeys} from './state/keys';
-import {followRig} from './state/rig';
+import {followRig, rig} from './state/rig';
 import {followRunningJob} from './state/running_job';
 
 type Entry = {is: 'coming'} | {is: 'refused'; error: ApiError; token: string} | {is: 'in'};
@@ -34,6 +34,11 @@ async function comeIn(token: string): Promise<void> {
   }
 }
 
+/** Without LEDs there is nothing to do at a desk: the tour leads to a rig. */
+function screenFor(asked: string): string {
+  return asked === 'desk' && rig.value?.devices.board.leds === 0 ? 'tour' : asked;
+}
+
 /** While it is dark the screens stay as they are, unseen, so that nothing typed is lost. */
 function Page() {
   if (entry.value.is === 'coming') return null;
@@ -41,7 +46,7 @@ function Page() {
   return (
     <>
       <div class={isDark.value ? 'frame covered' : 'frame'} inert={isDark.value}>
-        <Frame><LazyScreen name={place.value.screen} /></Frame>
+        <Frame><LazyScreen name={screenFor(place.value.screen)} /></Frame>
       </div>
       {isDark.value && <DarkPage />}
     </>

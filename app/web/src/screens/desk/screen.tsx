@@ -5,9 +5,7 @@ import {computed, useSignalEffect} from '@preact/signals';
 import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
-import {LazyScreen} from '../../frame/lazy_screen';
 import {isDark} from '../../state/dark';
-import {rig} from '../../state/rig';
 import {Empty} from '../../ui/empty';
 import {ClothForm} from './cloth_form';
 import {followFinder, looks, shots, takeShot} from './devices';
@@ -99,7 +97,6 @@ export default function DeskScreen() {
   useEffect(followScanned, []);
   useEffect(() => onEvent('shot', takeShot), []);
   useFocusAfterScan();
-  if (rig.value && rig.value.devices.board.leds === 0) return <LazyScreen name="tour" />;
   return (
     <div class="desk">
       <section class="stage" aria-labelledby="desk-title">
