@@ -68,7 +68,7 @@ export function Marks({viewer}: {viewer: Viewer}) {
   const canvas = viewer.canvas.value;
   const {line, box, pixel, divider, repeat, seam} = viewer.sight.value;
   const map = viewer.maps.value?.solve;
-  const mark = viewer.pencil.at.value;
+  const mark = viewer.pencil.value?.at;
   const isDivided = divider !== null && (viewer.scene.value?.sides.length ?? 0) > 1;
   const hasSeam = seam && repeat > 1;
   if (!view || !map || !(line || box || pixel || mark || isDivided || hasSeam)) return null;

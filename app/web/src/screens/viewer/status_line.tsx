@@ -7,15 +7,16 @@ import {valuesOf} from './probe';
 import type {Point} from '../../gl/view';
 import type {Viewer} from './viewer';
 
-function pixelAt(point: Point | null): Point | null {
-  return point && {x: Math.floor(point.x), y: Math.floor(point.y)};
+function pixelAt(point: Point): Point {
+  return {x: Math.floor(point.x), y: Math.floor(point.y)};
 }
 
 export function StatusLine({viewer}: {viewer: Viewer}) {
   const {layer, light, exposure} = viewer.sight.value;
   const view = viewer.view.value;
   const pixel = viewer.pixel.value;
-  const mark = pixelAt(viewer.pencil.at.value);
+  const pencil = viewer.pencil.value;
+  const mark = pencil && pixelAt(pencil.at);
   const lit = layer === 'relit' ? ` ${lightInWords(light)}` : '';
   const brighter = exposure === 0 ? '' : `, ${exposure > 0 ? '+' : ''}${exposure.toFixed(1)} stops`;
   const numbers = (name: string) => (pixel ? valuesOf(pixel, name).map((value) => Number(value).toFixed(3)).join(' ') : '');

@@ -10,6 +10,7 @@ import {toggleDifference, toggleDivider} from './compare_panel';
 import {DIFFERENCES, LAYERS} from './layers';
 import {nudged} from './light';
 import {toggleLight} from './light_panel';
+import {lead, setEnd} from './pencil';
 import {addressOfViewer} from './sight';
 import {save, snapshot} from './snapshot';
 import type {Tool, Viewer} from './viewer';
@@ -45,7 +46,7 @@ function isMeasuring(viewer: Viewer): boolean {
 /** Takes a tool that measures, for the hand and for keys, or puts it away. */
 function toggleTool(viewer: Viewer, tool: Tool): void {
   const isOn = viewer.tool.value === tool;
-  viewer.pencil.putAway();
+  viewer.pencil.value = null;
   if (!isOn) document.querySelector<HTMLElement>('.picture canvas')?.focus();
   viewer.tool.value = isOn ? 'move' : tool;
   if (!isOn) viewer.see({panel: 'measure'});
@@ -54,7 +55,7 @@ function toggleTool(viewer: Viewer, tool: Tool): void {
 /** Arrows move the view, or the light while it is held, or an end of what is measured. */
 function arrow(viewer: Viewer, by: Point, times: number): void {
   if (isMeasuring(viewer)) {
-    viewer.pencil.lead({x: times * by.x, y: times * by.y});
+    lead(viewer, {x: times * by.x, y: times * by.y});
     return;
   }
   if (viewer.tool.value === 'light') {
@@ -89,7 +90,7 @@ export function useViewerKeys(viewer: Viewer, {previous, next}: Neighbours): voi
       {key, does, run: () => arrow(viewer, by, 1)},
       {key: `Shift+${key}`, does: `${does}, ruler and rectangle farther`, run: () => arrow(viewer, by, FAST)},
     ]),
-    {key: 'Enter', does: 'sets an end of ruler or rectangle', run: () => isMeasuring(viewer) && viewer.pencil.set()},
+    {key: 'Enter', does: 'sets an end of ruler or rectangle', run: () => isMeasuring(viewer) && setEnd(viewer)},
     {key: '[', does: 'previous session', run: previous},
     {key: ']', does: 'next session', run: next},
   ]);

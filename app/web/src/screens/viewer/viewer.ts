@@ -8,11 +8,17 @@ import {amend, place} from '../../state/address';
 import {beginsAtZero, bitColour, bitsOf, fullScale, hasScale, isDifference, isThere} from './layers';
 import {Latest} from './latest';
 import {askOf, isSameSize, loadMaps, type Maps, sideOf} from './maps';
-import {Pencil} from './pencil';
 import {channelsOf, type PixelFacts, type RegionFacts, sharesOf} from './probe';
 import {asWritten, queryOf, type Sight, sightOf, type SolveName} from './sight';
 
 export type Tool = 'move' | 'light' | 'ruler' | 'region';
+
+/** What keys draw with, in pixels of the map; null in a viewer: no key has led it yet. */
+export interface Pencil {
+  at: Point;
+  /** Where what it draws begins; null: it draws nothing. */
+  begin: Point | null;
+}
 
 function towards(x: number, y: number, z: number): Vector {
   const length = Math.hypot(x, y, z) || 1;
@@ -31,7 +37,7 @@ export class Viewer {
   readonly canvas = signal<Size>({width: 0, height: 0});
   readonly tool = signal<Tool>('move');
   readonly isLightMoving = signal(false);
-  readonly pencil = new Pencil(this);
+  readonly pencil = signal<Pencil | null>(null);
   /** The daemon's figures of the whole map, once they were needed. */
   readonly whole = signal<RegionFacts | null>(null);
   readonly comparison = signal<Schemas['Comparison'] | null>(null);
