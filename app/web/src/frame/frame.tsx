@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is around every screen: where one can go, how the rig is, and what is wrong with the connection.
-import type {ComponentChildren} from 'preact';
+import type {ComponentChildren, ComponentType} from 'preact';
 import {useState} from 'preact/hooks';
-import {everywhere, useKeys} from '../state/keys';
+import {answer, api} from '../api/client';
+import {everywhere, registry, useKeys} from '../state/keys';
 import {place} from '../state/address';
 import {connection, isOutdated, rig} from '../state/rig';
 import {runningJob} from '../state/running_job';
+import {useAction} from '../ui/action';
 import {Button} from '../ui/button';
+import {Complaint} from '../ui/complaint';
+import {Dialog} from '../ui/dialog';
 import {Mark} from '../ui/mark';
 import {Share} from '../ui/share';
-import {Controls} from './controls';
-import {KeyList} from './key_list';
-import {VirtualRig} from './virtual_rig';
 import {silenceInWords, stateInWords, verdictOf} from './words';
 
 const tabs = [
@@ -34,7 +35,24 @@ function Tabs() {
   );
 }
 
-/** Of what is not heard nothing is claimed. */
+/** This page never keeps the rig to itself: what it takes from somebody else it gives back to all. */
+async function freeControls(): Promise<void> {
+  const {control} = await answer(api.POST('/api/v1/control', {body: {name: 'a page', take: true}}));
+  await answer(api.DELETE('/api/v1/control', {headers: {'X-Weft-Control': control}}));
+}
+
+function Controls({holder}: {holder: string}) {
+  const take = useAction(freeControls);
+  return (
+    <>
+      <span class="dim">{holder} has the controls</span>
+      <Button kind="quiet" isDisabled={take.isBusy} onClick={() => void take.run()}>Take the controls</Button>
+      <Complaint error={take.complaint} />
+    </>
+  );
+}
+
+/** Nothing is claimed of a rig that is not heard. */
 function RigState() {
   const status = rig.value;
   if (!status) return null;
@@ -87,6 +105,38 @@ function Warnings() {
 function toggleFullscreen(): void {
   if (document.fullscreenElement) void document.exitFullscreen();
   else void document.documentElement.requestFullscreen?.();
+}
+
+/** A rig that is not there can be broken; the panel for that is fetched when a key asks for it. */
+function VirtualRig() {
+  const [panel, setPanel] = useState<{Panel: ComponentType} | null>(null);
+  const toggle = async () => {
+    const {VirtualPanel} = await import('./virtual_panel');
+    setPanel(panel ? null : {Panel: VirtualPanel});
+  };
+  useKeys(everywhere, [{key: 'V', does: 'break this virtual rig, lay its table', run: () => void toggle()}]);
+  return panel && <panel.Panel />;
+}
+
+function KeyList({onClose}: {onClose: () => void}) {
+  return (
+    <Dialog title="Keys" onClose={onClose}>
+      {[...registry.value].map(([screen, keys]) => (
+        <section key={screen}>
+          <h3>{screen}</h3>
+          <dl class="keys">
+            {keys.map(({key, does}) => (
+              <div key={key}>
+                <dt><kbd>{key}</kbd></dt>
+                <dd>{does}</dd>
+              </div>
+            ))}
+          </dl>
+        </section>
+      ))}
+      <form method="dialog"><button class="button">Close</button></form>
+    </Dialog>
+  );
 }
 
 export function Frame({children}: {children: ComponentChildren}) {

@@ -1,7 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {ComponentChildren} from 'preact';
 import {useLayoutEffect, useRef, useState} from 'preact/hooks';
-import {rowsInView, type RowRange, type Viewport} from './virtual_rows';
+
+export interface Viewport {
+  top_px: number;
+  height_px: number;
+}
+
+export interface RowRange {
+  first: number;
+  end: number;
+}
+
+/** However high a window is, a browser is slow with more. */
+export const mostRows = 60;
+
+/** Those in view and a few beyond, so that a scroll finds them drawn. */
+export function rowsInView(view: Viewport, row_px: number, count: number, beyond = 8): RowRange {
+  const seen = Math.ceil(view.height_px / row_px) + 1;
+  const drawn = Math.min(seen + 2 * beyond, mostRows, count);
+  const wanted = Math.floor(view.top_px / row_px) - beyond;
+  const first = Math.max(0, Math.min(wanted, count - drawn));
+  return {first, end: first + drawn};
+}
 
 interface VirtualListProps {
   label: string;

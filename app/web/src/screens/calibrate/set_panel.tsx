@@ -8,12 +8,14 @@ import {useKeys} from '../../state/keys';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Mark} from '../../ui/mark';
+import {digits} from '../../ui/say';
 import {Share} from '../../ui/share';
 import {CoverageMap} from './coverage';
-import {Figures} from './figures';
 import {FinderView} from './finder_view';
 import {Answer, Photographs} from './photographs';
-import {coverageOf, figuresOf, lastUsed, outlineFound, outlineWanted, takenBy, type PhotographSet} from './photograph_set';
+import {
+  coverageOf, figuresOf, isMet, lastUsed, outlineFound, outlineWanted, shareOf, takenBy, type Figure, type PhotographSet,
+} from './photograph_set';
 import {leaveOut, photograph} from './state';
 
 interface Choice {
@@ -112,4 +114,27 @@ function Progress() {
   const status = rig.value;
   const share = status && status.frames_planned > 0 ? status.frames / status.frames_planned : null;
   return <Share label="Photographs" share={share} left_s={status?.left_s} />;
+}
+
+/** How well the camera is known by now, against what is asked. */
+function Figures({figures}: {figures: readonly Figure[]}) {
+  return (
+    <dl class="figures">
+      {figures.map((figure) => (
+        <div key={figure.key}>
+          <dt>{figure.name}</dt>
+          <dd>
+            <span class="numbers" data-figure={figure.key}>
+              <Mark verdict={isMet(figure) ? 'fine' : 'waiting'}>{digits(figure.now, 3)} {figure.unit}</Mark>
+            </span>
+            <progress aria-label={`${figure.name} on the way to what is asked`} value={shareOf(figure)} max={1} />
+            <span class="dim numbers">
+              asked {digits(figure.asked)} {figure.unit}
+              {figure.then !== null && `, next ${digits(figure.then)}`}
+            </span>
+          </dd>
+        </div>
+      ))}
+    </dl>
+  );
 }

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // A walk from photographs to an accepted calibration, stage by stage.
+import {useEffect, useState} from 'preact/hooks';
+import {asApiError, type ApiError} from '../../api/client';
 import {amend, place} from '../../state/address';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
+import {textIn} from '../../ui/fields';
 import {Mark, type Verdict} from '../../ui/mark';
+import {errorOf} from '../jobs/price';
+import {stateOf} from '../jobs/queue';
+import {jobs, queueJob} from '../jobs/state';
 import {Acceptance} from './acceptance';
 import {Begin} from './begin';
 import {Calculation} from './calculation';
 import {SetPanel} from './set_panel';
-import {SoFar} from './so_far';
 import {complaint, isKnown, known, work} from './state';
 import {
-  currentStage, hasResult, isUnharmed, madeBy, setOf, stagesOf, standingOf, trialOf, type Stage, type Standing, type Walk,
+  currentStage, hasResult, isUnharmed, madeBy, setOf, stagesOf, standingOf, trialOf, type JobRequest, type Stage, type Standing, type Walk,
 } from './walk';
 
 const marks: Record<Standing, {verdict: Verdict; says: string}> = {
@@ -81,6 +86,24 @@ function StagePanel({walk, stage}: {walk: Walk; stage: Stage}) {
       {isOver && stage.is_aside && <p role="status">Its photographs are there. The sensor is measured by them, too.</p>}
       {isOver && <Next walk={walk} />}
     </>
+  );
+}
+
+/** What the photographs by now would give, which tells whether one more is worth its while. It asks for one trial. */
+function SoFar({trial}: {trial: JobRequest}) {
+  const [id, know] = useState<string | null>(null);
+  const [refused, refuse] = useState<ApiError | null>(null);
+  useEffect(() => {
+    queueJob(trial).then((job) => know(job.id), (error: unknown) => refuse(asApiError(error)));
+  }, []);
+  const job = jobs.value.find((each) => each.id === id);
+  return (
+    <section class="so-far" aria-labelledby="so-far-title">
+      <h3 id="so-far-title">So far</h3>
+      {job && <p role="status">{job.state === 'done' ? textIn(job.result, 'summary') : stateOf(job)}</p>}
+      {job?.state === 'failed' && <Complaint error={errorOf(job)} />}
+      <Complaint error={refused} />
+    </section>
   );
 }
 

@@ -2,7 +2,7 @@
 // What is said of the next cloth, and what its scan would be called and take.
 import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
-import {BillView} from './bill_view';
+import {BillView} from './bill';
 import {cloth, say} from './cloth';
 import {millisecondsOf} from './exposure';
 import {bracket, repeats} from './preferences';

@@ -2,8 +2,8 @@
 // Board and camera, held open for a person who looks: the light, the finder, test shots.
 import {computed, effect, signal, untracked} from '@preact/signals';
 import {answer, api, asApiError, fetched, type ApiError, type Schemas} from '../../api/client';
+import {isDark} from '../../state/dark';
 import {askRig, rig} from '../../state/rig';
-import {isSeen} from '../../state/seen';
 
 /** What lights the table while somebody looks: one LED after another, one of them, or the room alone. */
 export type Light = 'round' | 'room' | number;
@@ -83,6 +83,14 @@ function look(stop: AbortSignal): Promise<void>[] {
     repeat(stop, lightEvery_ms, lightOnce),
   ];
 }
+
+const isVisible = signal(!document.hidden);
+document.addEventListener('visibilitychange', () => {
+  isVisible.value = !document.hidden;
+});
+
+/** Whether anybody can look at this page: its tab is in front, and it is not black for a photograph. */
+const isSeen = computed(() => isVisible.value && !isDark.value);
 
 /** Others want the devices: nothing more is asked of them. */
 const isHeld = signal(false);

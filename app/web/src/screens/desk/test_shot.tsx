@@ -10,9 +10,7 @@ import {exposedOf} from './clipping';
 import {say} from './cloth';
 import {shots} from './devices';
 import {exposureInWords, millisecondsOf} from './exposure';
-import {HistogramPlot} from './histogram';
-import {Loupe} from './loupe';
-import type {Point} from './loupe_tiles';
+import {Loupe, type Point} from './loupe';
 
 type TestShot = Schemas['TestShot'];
 type Focus = NonNullable<TestShot['focus']>;
@@ -102,6 +100,22 @@ function Suggested({shot}: {shot: TestShot}) {
       <span>A scan would expose {exposureInWords(suggested)}.</span>
       <Button onClick={() => say({exposure_ms: millisecondsOf(suggested)})}>Use that</Button>
     </p>
+  );
+}
+
+const channels = ['red', 'green', 'blue'] as const;
+
+function outlineOf(bins: readonly number[]): string {
+  const most = Math.log1p(Math.max(1, ...bins));
+  return bins.map((count, bin) => `${bin},${(1 - Math.log1p(count) / most).toFixed(3)}`).join(' ');
+}
+
+/** Counts by channel from black to white, on a logarithmic scale. */
+function HistogramPlot({of, label}: {of: Schemas['Histogram']; label: string}) {
+  return (
+    <svg class="histogram" viewBox="0 0 63 1" preserveAspectRatio="none" role="img" aria-label={label}>
+      {channels.map((channel) => <polyline key={channel} class={channel} points={outlineOf(of[channel].bins)} />)}
+    </svg>
   );
 }
 

@@ -9,9 +9,10 @@ import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import {Mark} from '../../ui/mark';
 import {TortureScene} from '../jobs/torture';
-import {findingsOfPage, type Finding} from './page_findings';
 
 type Doctor = Schemas['Doctor'];
+type Finding = Doctor['findings'][number];
+
 const order = {fault: 0, warning: 1, fine: 2};
 
 /** A remedy that is a command begins with the name of a program. */
@@ -54,6 +55,37 @@ function Versions({said}: {said: Schemas['Version']}) {
       {said.camera && `, ${said.camera.model} ${said.camera.serial}`}
     </p>
   );
+}
+
+function drawing(): Finding {
+  const part = 'drawing';
+  const context = document.createElement('canvas').getContext('webgl2');
+  if (!context) {
+    return {part, verdict: 'warning', says: 'This browser has no WebGL 2: the daemon draws what the viewer shows, more slowly.', remedy: 'Switch on hardware acceleration in the settings of the browser.'};
+  }
+  const names = context.getExtension('WEBGL_debug_renderer_info');
+  const renderer = String(context.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : context.RENDERER));
+  context.getExtension('WEBGL_lose_context')?.loseContext();
+  const isSoftware = /swiftshader|llvmpipe|software/i.test(renderer);
+  return {part, verdict: 'fine', says: `WebGL 2 by ${renderer}${isSoftware ? ', without a graphics processor' : ''}.`, remedy: ''};
+}
+
+function origin(): Finding {
+  const part = 'origin';
+  if (isSecureContext) return {part, verdict: 'fine', says: `The page came from ${location.origin}, which the browser trusts.`, remedy: ''};
+  return {part, verdict: 'warning', says: `The page came from ${location.origin} without encryption: each tab listens for itself, and copying is done the old way.`, remedy: `ssh -L ${location.port}:localhost:${location.port} ${location.hostname}`};
+}
+
+const slow_ms = 200;
+
+function distance(roundTrip_ms: number): Finding {
+  const says = `The daemon answers within ${Math.ceil(roundTrip_ms)} ms.`;
+  return {part: 'distance', verdict: roundTrip_ms > slow_ms ? 'warning' : 'fine', says, remedy: roundTrip_ms > slow_ms ? 'Maps come slowly over this network: use a cable.' : ''};
+}
+
+/** What the page knows of itself: how it draws, how it came here, how far away the daemon is. */
+function findingsOfPage(roundTrip_ms: number): Finding[] {
+  return [drawing(), origin(), distance(roundTrip_ms)];
 }
 
 interface Examined {

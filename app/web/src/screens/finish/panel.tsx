@@ -21,11 +21,10 @@ import {hasEnded} from '../jobs/queue';
 import {cancel, jobs, queueJob, useJobs} from '../jobs/state';
 import {addressOfViewer, FIRST_SIGHT} from '../viewer/sight';
 import type {Viewer} from '../viewer/viewer';
-import {Draft} from './draft';
 import {StepFacts, StepPictures, Verdicts} from './found';
 import {type Of, requestOf, usePreview} from './making';
 import {PreviewView} from './preview_view';
-import {keysOfBox, moved, type Recipe, recipeOfSet, type Recipes, type Spot, type Step, stepOf, withKeys, without} from './recipe';
+import {Draft, keysOfBox, moved, type Recipe, recipeOfSet, type Recipes, type Spot, type Step, stepOf, withKeys, without} from './recipe';
 import {StepForm} from './step_form';
 
 export function FinishPanel({viewer}: {viewer: Viewer}) {

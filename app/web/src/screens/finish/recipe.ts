@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recipe as it is worked on: its steps, and what was changed of them.
+import {signal, type Signal} from '@preact/signals';
 import type {Schemas} from '../../api/client';
 import type {Box} from '../../gl/view';
 import {isFields, listIn, textIn} from '../../ui/fields';
@@ -96,5 +97,36 @@ function parsed(text: string): unknown {
     return JSON.parse(text);
   } catch {
     return null;
+  }
+}
+
+/**
+ * The recipe that is worked on of a session, with its steps back, kept by this browser: it outlives a reload and
+ * whatever ends the daemon. Another browser begins with the steps of a set of maps.
+ */
+export class Draft {
+  readonly history: Signal<History>;
+  private readonly key: string;
+
+  constructor(session: string, first: Recipe) {
+    this.key = `weft.finish.${session}`;
+    this.history = signal(historyIn(localStorage.getItem(this.key)) ?? {...nothing, now: first});
+  }
+
+  change(to: Recipe): void {
+    this.take(changed(this.history.value, to));
+  }
+
+  undo(): void {
+    this.take(undone(this.history.value));
+  }
+
+  redo(): void {
+    this.take(redone(this.history.value));
+  }
+
+  private take(history: History): void {
+    this.history.value = history;
+    localStorage.setItem(this.key, JSON.stringify(history));
   }
 }

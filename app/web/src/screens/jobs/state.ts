@@ -5,7 +5,6 @@ import {useEffect} from 'preact/hooks';
 import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
 import {hasEnded, merged, queueOf, withEvent, type Job} from './queue';
-import {Requests} from './requests';
 
 const pageLength = 50;
 
@@ -45,6 +44,41 @@ export function useJobs(): void {
     const ends = [onEvent('job', (event) => void hear(event)), onEvent('gap', () => void ask())];
     return () => ends.forEach((end) => end());
   }, []);
+}
+
+/** Works on plain http too, where a browser has no randomUUID. */
+function newRequestId(): string {
+  const bytes = crypto.getRandomValues(new Uint8Array(12));
+  return `page-${[...bytes].map((byte) => byte.toString(16).padStart(2, '0')).join('')}`;
+}
+
+interface Asked {
+  id: string;
+  /** The job that it became; null: the daemon has not answered yet. */
+  job: string | null;
+}
+
+/** The same request again is the same job until that has ended: however often a button is pressed, its work is done once. */
+export class Requests {
+  private readonly asked = new Map<string, Asked>();
+
+  idOf(request: object, isOver: (job: string) => boolean): string {
+    const key = JSON.stringify(request);
+    const before = this.asked.get(key);
+    if (before && (before.job === null || !isOver(before.job))) return before.id;
+    const id = newRequestId();
+    this.asked.set(key, {id, job: null});
+    return id;
+  }
+
+  answered(request: object, job: string): void {
+    const asked = this.asked.get(JSON.stringify(request));
+    if (asked) asked.job = job;
+  }
+
+  refused(request: object): void {
+    this.asked.delete(JSON.stringify(request));
+  }
 }
 
 const requests = new Requests();

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // A cloth as a material: what it looks like, what it is made of, and how it leaves.
 import './material.css';
-import {useEffect, useMemo} from 'preact/hooks';
+import {useEffect, useMemo, useState} from 'preact/hooks';
+import {answer, api, type ApiError, asApiError, type Schemas} from '../../api/client';
 import {go, place} from '../../state/address';
 import {Complaint} from '../../ui/complaint';
 import {fieldsOf, listIn, textIn} from '../../ui/fields';
 import {Tabs} from '../../ui/tabs';
+import {timeOf} from '../../ui/words';
 import {Choose, CurrentMaps, MakeMaps} from './choose';
 import {ExportPanel} from './export_panel';
 import {LayersPanel} from './layers_panel';
 import {Look} from './look';
 import {LookPanel} from './look_panel';
-import {type MaterialName, nameOf, type Panel, PANELS} from './sight';
+import {type MaterialName, nameOf, type Panel, PANELS, placeOfMaterial} from './sight';
 import {Stage} from './stage';
 import {titleOf} from './title';
-import {Unbuilt} from './unbuilt';
 
 export default function MaterialScreen() {
   const {parts} = place.value;
@@ -74,4 +75,27 @@ function sourcesOf(set: unknown): string[] {
   const inWords = (of: unknown) => `${textIn(of, 'level')} solve ${textIn(of, 'solve').slice(0, 8)}`.trim();
   if (scans.length > 0) return [...new Set(scans.map((scan) => `${textIn(scan, 'session')}: ${inWords(scan)}`))];
   return textIn(set, 'solve') === '' ? [] : [inWords(set)];
+}
+
+/** A material by its files, with what was built of it. */
+function Unbuilt({material}: {material: string}) {
+  const [builds, setBuilds] = useState<Schemas['Builds']['builds']>([]);
+  const [complaint, setComplaint] = useState<ApiError | null>(null);
+  useEffect(() => {
+    answer(api.GET('/api/v1/materials/{name}/builds', {params: {path: {name: material}}})).then(
+      (list) => setBuilds(list.builds), (error: unknown) => setComplaint(asApiError(error)),
+    );
+  }, [material]);
+  return (
+    <section class="page material-files">
+      <h1>{material}</h1>
+      <Complaint error={complaint} />
+      <LayersPanel material={material} built="" />
+      <h2>Builds</h2>
+      {builds.length === 0 && <p class="dim">None yet.</p>}
+      <ul class="choose-material" aria-label="Builds">
+        {builds.map(({id, created}) => <li key={id}><a href={placeOfMaterial({of: material, is: 'builds', id})}>{id.slice(0, 8)}</a> <span class="dim">{timeOf(created)}</span></li>)}
+      </ul>
+    </section>
+  );
 }

@@ -4,18 +4,20 @@ import {useEffect, useState} from 'preact/hooks';
 import {amend, place} from '../../state/address';
 import {rig} from '../../state/rig';
 import {useKeys} from '../../state/keys';
+import {Button} from '../../ui/button';
+import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
+import {Field} from '../../ui/field';
 import {counted} from '../../ui/say';
 import {VirtualList} from '../../ui/virtual_list';
 import {TortureScene} from '../jobs/torture';
 import {BatchBar} from './batch_bar';
-import {addressOf, filtersIn, isNarrowed, type Filters} from './filters';
-import {FilterBar} from './filter_bar';
+import {addressOf, filtersIn, isNarrowed, type Filters, noFilters, states} from './filters';
 import {LastWord} from './last_word';
 import {SessionRow} from './session_row';
 import {all, extended, nothing, toggled} from './selection';
-import {askMore, askTags, complaint, look, shelf} from './shelf';
+import {askMore, askTags, complaint, look, shelf, tags} from './shelf';
 
 const row_px = 72;
 /** Sessions are asked for before they come into view. */
@@ -75,6 +77,38 @@ export function Library() {
       {chosen.length > 0 && (
         <BatchBar chosen={chosen} onAll={() => select(all(names))} onNone={() => select(nothing)} onChanged={again} />
       )}
+    </div>
+  );
+}
+
+interface FilterBarProps {
+  filters: Filters;
+  onChange: (filters: Filters) => void;
+}
+
+const stateChoices = [
+  {value: '', says: 'any'},
+  ...states.map((state) => ({value: state, says: state === 'capturing' ? 'unfinished' : state})),
+];
+
+function FilterBar({filters, onChange}: FilterBarProps) {
+  const search = () => document.querySelector<HTMLInputElement>('#library-search')?.select();
+  useKeys('sessions', [{key: '/', does: 'search', run: search}]);
+  const put = <K extends keyof Filters>(key: K) => (value: Filters[K]) => onChange({...filters, [key]: value});
+  return (
+    <div class="filters" role="search">
+      <Field id="library-search" label="Search" type="search" value={filters.words} onInput={put('words')}
+        placeholder="name, fabric, tag, composition, notes" />
+      <Field label="Tag" value={filters.tag} onInput={put('tag')} list={tags.value} />
+      <Choice label="State" value={filters.state} options={stateChoices} onChange={put('state')} />
+      <Field label="From" type="date" value={filters.from} onInput={put('from')} />
+      <Field label="To" type="date" value={filters.to} onInput={put('to')} />
+      <Field label="Calibration" value={filters.calibration} onInput={put('calibration')} placeholder="id" />
+      <label class="check">
+        <input type="checkbox" checked={filters.warned} onChange={(event) => put('warned')(event.currentTarget.checked)} />
+        With warnings
+      </label>
+      <Button kind="quiet" isDisabled={!isNarrowed(filters)} onClick={() => onChange(noFilters)}>Clear</Button>
     </div>
   );
 }

@@ -5,7 +5,11 @@ import {Mark} from '../../ui/mark';
 import {bytesOf, timeOf} from '../../ui/words';
 import type {Summary} from './metadata';
 import {SessionState} from './session_state';
-import {Thumbnail} from './thumbnail';
+
+/** The cloth relit, or photographed; an empty place where there is neither. */
+function Thumbnail({session: {thumbnail}}: {session: Summary}) {
+  return <div class="thumbnail">{thumbnail && <img src={thumbnail} alt="" loading="lazy" decoding="async" />}</div>;
+}
 
 interface SessionRowProps {
   session: Summary;

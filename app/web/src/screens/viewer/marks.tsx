@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies over the picture: ruler, rectangle, held pixel, divider, lamp.
+// What lies over the picture: ruler, rectangle, held pixel, divider, lamp, scale bar.
 import {type Repeat, repeats} from '../../gl/tiles';
 import {type Point, type Size, type View, toCanvas} from '../../gl/view';
 import {clothOf} from '../../state/cloths';
+import {scaleBar, zoomInWords} from './bars';
 import {placeOf} from './light';
 import {type Maps, solveInWords} from './maps';
 import type {Viewer} from './viewer';
@@ -36,7 +37,7 @@ function HeldPixel({at, side}: {at: Point; side: number}) {
   );
 }
 
-function Pencil({at}: {at: Point}) {
+function PencilMark({at}: {at: Point}) {
   return <path class="pencil" d={`M${at.x - 14} ${at.y}h10M${at.x + 4} ${at.y}h10M${at.x} ${at.y - 14}v10M${at.x} ${at.y + 4}v10`} />;
 }
 
@@ -79,7 +80,7 @@ export function Marks({viewer}: {viewer: Viewer}) {
       {box && corner && <rect class="box" x={corner.x} y={corner.y} width={box.width * view.zoom} height={box.height * view.zoom} />}
       {line && <Ruler ends={[centreOf(line[0], view, canvas), centreOf(line[1], view, canvas)]} />}
       {pixel && <HeldPixel at={centreOf(pixel, view, canvas)} side={view.zoom} />}
-      {mark && <Pencil at={toCanvas(mark, view, canvas)} />}
+      {mark && <PencilMark at={toCanvas(mark, view, canvas)} />}
       {isDivided && <line class="divider" x1={divider * canvas.width} y1={0} x2={divider * canvas.width} y2={canvas.height} />}
     </svg>
   );
@@ -101,4 +102,20 @@ export function SideNames({viewer}: {viewer: Viewer}) {
 function nameOf({name, solve}: Maps, beside: Maps): string {
   const what = name.solve === 'truth' ? 'truth' : solveInWords(solve);
   return name.session === beside.name.session ? what : `${clothOf(name.session)}, ${what}`;
+}
+
+const MOST_PX = 160;
+
+/** A length on the cloth, true in the middle of the frame. */
+export function ScaleBarMark({viewer, density}: {viewer: Viewer; density: number}) {
+  const maps = viewer.maps.value;
+  const view = viewer.view.value;
+  if (!maps || !view) return null;
+  const bar = scaleBar(maps.solve.mm_per_pixel, view.zoom, MOST_PX * density);
+  return (
+    <div class="scale-bar numbers">
+      <span class="length" style={{width: `${bar.length / density}px`}} />
+      {bar.says} <span class="dim">{zoomInWords(view.zoom)}</span>
+    </div>
+  );
 }

@@ -10,9 +10,8 @@ import {Hand} from './hand';
 import {saysOf} from './layers';
 import {Legend} from './legend';
 import {lightInWords} from './light';
-import {LampMark, Marks, SideNames} from './marks';
+import {LampMark, Marks, ScaleBarMark, SideNames} from './marks';
 import {Minimap} from './minimap';
-import {ScaleBarMark} from './scale_bar_mark';
 import type {Viewer} from './viewer';
 
 const cursors = {move: 'grab', light: 'crosshair', ruler: 'crosshair', region: 'crosshair'};

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-import {useLatest} from '../../ui/latest';
 import './viewer.css';
 import {useEffect, useMemo, useState} from 'preact/hooks';
 import {answer, api, ApiError, asApiError} from '../../api/client';
@@ -7,21 +6,25 @@ import {become, go, place} from '../../state/address';
 import {clothOf} from '../../state/cloths';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
+import {useLatest} from '../../ui/latest';
 import {Tabs} from '../../ui/tabs';
 import {MadePanel} from '../finish/found';
 import {FinishPanel} from '../finish/panel';
+import {zoomInWords} from './bars';
 import type {PictureCanvas} from './canvas';
 import {ComparePanel, optionsOf, useSolves} from './compare_panel';
+import {saysOf} from './layers';
+import {lightInWords} from './light';
 import {LightPanel} from './light_panel';
 import {LayerPanel} from './look_panel';
 import {NoSession} from './no_session';
 import {Picture} from './picture';
 import {PixelPanel} from './pixel_panel';
+import {valuesOf} from './probe';
 import {RegionPanel} from './region_panel';
 import {RulerPanel} from './ruler_panel';
 import {optionOf, useSets} from './sets';
 import {addressOfViewer, nameOf, type Panel, PANELS, solveNameOf, type SolveName, textOf} from './sight';
-import {StatusLine} from './status_line';
 import {Toolbar, useViewerKeys} from './toolbar';
 import {Viewer} from './viewer';
 import {WhyPanel} from './why_panel';
@@ -85,6 +88,27 @@ function Viewing({name}: {name: SolveName}) {
           <Chosen viewer={viewer} panel={viewer.panel.value} />
         </Tabs>
       </aside>
+    </div>
+  );
+}
+
+/** What the canvas shows and what is known of the pixel that is asked about, in one line. */
+function StatusLine({viewer}: {viewer: Viewer}) {
+  const {layer, light, exposure} = viewer.sight.value;
+  const view = viewer.view.value;
+  const pixel = viewer.pixel.value;
+  const pencil = viewer.pencil.value;
+  const lit = layer === 'relit' ? ` ${lightInWords(light)}` : '';
+  const brighter = exposure === 0 ? '' : `, ${exposure > 0 ? '+' : ''}${exposure.toFixed(1)} stops`;
+  const numbers = (name: string) => (pixel ? valuesOf(pixel, name).map((value) => Number(value).toFixed(3)).join(' ') : '');
+  return (
+    <div class="status-line numbers">
+      <span role="status">{saysOf(layer)}{lit}{brighter}{view && `, ${zoomInWords(view.zoom)}`}{pencil && `, mark at ${Math.floor(pencil.at.x)}, ${Math.floor(pencil.at.y)}`}</span>
+      {pixel && (
+        <span>
+          {pixel.x}, {pixel.y} <span class="dim">normal</span> {numbers('normal')} <span class="dim">albedo</span> {numbers('albedo')}
+        </span>
+      )}
     </div>
   );
 }

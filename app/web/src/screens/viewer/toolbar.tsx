@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import {nextZoom, zoomed, type Point, panned} from '../../gl/view';
+// What the buttons and keys of a viewer do. Ruler and rectangle by keys: arrows lead a point over the map, Enter sets
+// the begin and then the end.
+import {clamp, nextZoom, panned, type Point, toCanvas, zoomed} from '../../gl/view';
 import {useKeys} from '../../state/keys';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
@@ -7,13 +9,13 @@ import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import type {PictureCanvas} from './canvas';
 import {toggleDifference, toggleDivider} from './compare_panel';
+import {measure} from './hand';
 import {DIFFERENCES, LAYERS} from './layers';
 import {nudged} from './light';
 import {toggleLight} from './light_panel';
-import {lead, setEnd} from './pencil';
 import {addressOfViewer} from './sight';
 import {save, snapshot} from './snapshot';
-import type {Tool, Viewer} from './viewer';
+import type {Pencil, Tool, Viewer} from './viewer';
 
 /** How far an arrow goes: a share of the canvas, or of the disc of lights. */
 const ARROW_SHARE = 1 / 8;
@@ -41,6 +43,34 @@ function zoomTo(viewer: Viewer, zoom: number): void {
 
 function isMeasuring(viewer: Viewer): boolean {
   return viewer.tool.value === 'ruler' || viewer.tool.value === 'region';
+}
+
+/** At first in the middle of a pixel in the middle of the view. */
+function pencilOf(viewer: Viewer): Pencil {
+  const {x, y} = viewer.view.value ?? {x: 0, y: 0};
+  return viewer.pencil.value ?? {at: {x: Math.floor(x) + 0.5, y: Math.floor(y) + 0.5}, begin: null};
+}
+
+/** A step is a pixel of the map, or a pixel of the canvas where that is farther: one that cannot be seen leads nobody. */
+function lead(viewer: Viewer, by: Point): void {
+  const map = viewer.maps.value?.solve;
+  const view = viewer.view.value;
+  if (!map || !view) return;
+  const step = Math.max(1, 1 / view.zoom);
+  const {at, begin} = pencilOf(viewer);
+  const to = {x: clamp(at.x + step * by.x, 0, map.width), y: clamp(at.y + step * by.y, 0, map.height)};
+  viewer.pencil.value = {at: to, begin};
+  const canvas = viewer.canvas.value;
+  const seen = toCanvas(to, view, canvas);
+  const isSeen = seen.x >= 0 && seen.y >= 0 && seen.x <= canvas.width && seen.y <= canvas.height;
+  if (!isSeen) viewer.move(({zoom}) => ({...to, zoom}));
+  if (begin) measure(viewer, begin, to);
+}
+
+function setEnd(viewer: Viewer): void {
+  const {at, begin} = pencilOf(viewer);
+  viewer.pencil.value = {at, begin: begin ? null : at};
+  if (!begin) measure(viewer, at, at);
 }
 
 /** Takes a tool that measures, for the hand and for keys, or puts it away. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {expect, test} from 'vitest';
-import {cornerOf, tilesIn} from '../../../../app/web/src/screens/desk/loupe_tiles';
+import {cornerOf, tilesIn} from '../../../../app/web/src/screens/desk/loupe';
 
 test('a loupe stays within the photograph', () => {
   expect(cornerOf({x: 0, y: 1}, 256, 1536, 1024)).toEqual({x: 0, y: 768});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The daemon's bill of a scan in words.
+// What a scan takes and what for, before it begins: the daemon's bill in words.
 import type {Schemas} from '../../api/client';
 import {counted, degrees} from '../../ui/say';
 import {durationOf} from '../../ui/words';
@@ -25,4 +25,27 @@ export function totalOf(bill: readonly BillLine[]): string {
 export function gainOf({without_deg, with_deg}: BillLine): string | null {
   if (without_deg === null || with_deg === null) return null;
   return `${degrees(without_deg)} without, ${degrees(with_deg)} with`;
+}
+
+const names: Record<BillLine['what'], string> = {
+  lit: 'Lit', dark: 'Dark', repeat: 'Repeat', bracket: 'Bracket', polariser: 'Polariser', below: 'From below',
+};
+
+export function BillView({bill}: {bill: readonly BillLine[]}) {
+  return (
+    <section class="bill" aria-label="What the scan takes">
+      <p class="line"><strong>Scan</strong> <span class="numbers">{totalOf(bill)}</span></p>
+      <ul>
+        {bill.map((line) => {
+          const gain = gainOf(line);
+          return (
+            <li key={line.what}>
+              <p class="line">{names[line.what]} <span class="numbers">{costOf(line)}</span></p>
+              <p class="dim">{line.for}{gain && <> <span class="numbers">{gain}.</span></>}</p>
+            </li>
+          );
+        })}
+      </ul>
+    </section>
+  );
 }

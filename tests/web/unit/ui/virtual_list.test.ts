@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {describe, expect, test} from 'vitest';
-import {mostRows, rowsInView} from '../../../../app/web/src/ui/virtual_rows';
+import {mostRows, rowsInView} from '../../../../app/web/src/ui/virtual_list';
 
 describe('rows in view', () => {
   test('are those that can be seen and some beyond', () => {
