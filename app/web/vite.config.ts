@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+import path from 'node:path';
 import {build, defineConfig, type Plugin, type Rollup} from 'vite';
 
 const daemon = process.env.WEFT_DAEMON ?? 'http://127.0.0.1:8470';
 
-/** A screen's file is called as its folder. */
-function nameOf(module: string | null): string {
-  return module?.match(/screens\/(\w+)\/screen/)?.[1] ?? '[name]';
+/** A screen's files are called as its folder: their names stand in what is loaded first. */
+function nameOf(file: string): string {
+  return path.parse(file).name.replace('_screen', '');
 }
 
 /** Draws a report, which carries it (report/page.h): one file with its style. */
@@ -16,7 +17,7 @@ const report: Plugin = {
     const made = await build({
       configFile: false,
       logLevel: 'warn',
-      build: {target: 'es2022', write: false, rollupOptions: {input: 'src/report/main.tsx', output: {format: 'iife'}}},
+      build: {target: 'es2022', write: false, rollupOptions: {input: 'src/report/draw_report.tsx', output: {format: 'iife'}}},
     });
     for (const file of (made as Rollup.RollupOutput).output) {
       if (file.type === 'chunk') this.emitFile({type: 'asset', fileName: 'report.js', source: file.code});
@@ -36,7 +37,8 @@ export default defineConfig({
     sourcemap: false,
     rollupOptions: {
       output: {
-        chunkFileNames: ({facadeModuleId}) => `assets/${nameOf(facadeModuleId)}-[hash].js`,
+        chunkFileNames: ({name}) => `assets/${nameOf(name)}-[hash].js`,
+        assetFileNames: ({names: [name = '']}) => `assets/${nameOf(name)}-[hash][extname]`,
         experimentalMinChunkSize: 1000,  // bytes: asking for less takes longer than it does
       },
     },

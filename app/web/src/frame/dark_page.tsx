@@ -3,7 +3,7 @@
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {answer, api} from '../api/client';
 import {connection, rig} from '../state/rig';
-import {silenceInWords, stateInWords} from './words';
+import {silenceInWords, stateInWords} from './rig_words';
 
 const glimpse_ms = 2000;
 

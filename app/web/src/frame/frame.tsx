@@ -13,7 +13,7 @@ import {Complaint} from '../ui/complaint';
 import {Dialog} from '../ui/dialog';
 import {Mark} from '../ui/mark';
 import {Share} from '../ui/share';
-import {silenceInWords, stateInWords, verdictOf} from './words';
+import {silenceInWords, stateInWords, verdictOf} from './rig_words';
 
 const tabs = [
   {screen: 'desk', says: 'Desk'},

@@ -5,21 +5,21 @@ import {connection, heardAt, onEvent} from '../api/events';
 import {place} from '../state/address';
 import {Complaint} from '../ui/complaint';
 import {Button} from '../ui/button';
-import {useLatest} from '../ui/latest';
+import {useLatest} from '../ui/use_latest';
 
 type Load = () => Promise<{default: ComponentType}>;
 
 /** Each is a file of its own, fetched when it is first shown. */
 const screens: Record<string, Load> = {
-  desk: () => import('../screens/desk/screen'),
-  sessions: () => import('../screens/sessions/screen'),
-  viewer: () => import('../screens/viewer/screen'),
-  material: () => import('../screens/material/screen'),
-  calibrate: () => import('../screens/calibrate/screen'),
-  batches: () => import('../screens/batches/screen'),
-  jobs: () => import('../screens/jobs/screen'),
-  doctor: () => import('../screens/doctor/screen'),
-  tour: () => import('../screens/tour/screen'),
+  desk: () => import('../screens/desk/desk_screen'),
+  sessions: () => import('../screens/sessions/sessions_screen'),
+  viewer: () => import('../screens/viewer/viewer_screen'),
+  material: () => import('../screens/material/material_screen'),
+  calibrate: () => import('../screens/calibrate/calibrate_screen'),
+  batches: () => import('../screens/batches/batches_screen'),
+  jobs: () => import('../screens/jobs/jobs_screen'),
+  doctor: () => import('../screens/doctor/doctor_screen'),
+  tour: () => import('../screens/tour/tour_screen'),
 };
 
 function NoSuchScreen() {

@@ -2,7 +2,7 @@
 // What can be asked for, as the daemon says it: kinds of jobs with what they may be told, and walks of a calibration.
 import {signal} from '@preact/signals';
 import {answer, api, type Schemas} from '../api/client';
-import {type Schema, schemaOf, wordsOf} from '../ui/schema';
+import {type Schema, schemaOf, wordsOf} from '../ui/request_schema';
 
 export type Forms = Schemas['Forms'];
 

@@ -4,7 +4,7 @@ import {useState} from 'preact/hooks';
 import {Button} from './button';
 import {Choice} from './choice';
 import {Field} from './field';
-import {isWrong, keptBy, labelOf, rangeInWords, type Schema, type SchemaField, type Value, valueOf, type Wish, withValue} from './schema';
+import {isWrong, keptBy, labelOf, rangeInWords, type Schema, type SchemaField, type Value, valueOf, type Wish, withValue} from './request_schema';
 
 interface SchemaFormProps {
   schema: Schema;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {webcrypto} from 'node:crypto';
 import {describe, expect, test} from 'vitest';
-import {Requests} from '../../../../app/web/src/screens/jobs/state';
+import {Requests} from '../../../../app/web/src/screens/jobs/jobs';
 
 globalThis.crypto ??= webcrypto as Crypto;  // Node 18 has it by import alone
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {expect, test} from 'vitest';
 import {type Cloth, laidOut} from '../../../../app/web/src/screens/material/shape';
-import {FIRST} from '../../../../app/web/src/screens/material/sight';
+import {FIRST} from '../../../../app/web/src/screens/material/material_sight';
 
 const canvas = {width: 900, height: 600};
 const tile: Cloth = {size_mm: [30, 20], is_known: true, repeats: true};

@@ -7,15 +7,15 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Dialog} from '../../ui/dialog';
 import {Empty} from '../../ui/empty';
-import {useLatest} from '../../ui/latest';
+import {useLatest} from '../../ui/use_latest';
 import {counted} from '../../ui/say';
 import {durationOf} from '../../ui/words';
 import {JobRow} from '../jobs/job_row';
 import {Log} from '../jobs/log';
 import {hasEnded, type Job} from '../jobs/queue';
-import {jobs, queueJob} from '../jobs/state';
+import {jobs, queueJob} from '../jobs/jobs';
 import {PlanView} from './plan_view';
-import type {Report} from './report';
+import type {Report} from './changes';
 import {ReportView} from './report_view';
 
 /** One batch: its plan, how far it is, and what changed. */

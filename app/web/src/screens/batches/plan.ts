@@ -2,7 +2,7 @@
 // A batch before it is run: what is asked for, and its plan as people read it.
 import type {Schemas} from '../../api/client';
 import {counted} from '../../ui/say';
-import type {Wish as Said} from '../../ui/schema';
+import type {Wish as Said} from '../../ui/request_schema';
 import {filtersIn, questionOf} from '../sessions/filters';
 
 export type Plan = NonNullable<Schemas['OneBatch']['plan']>;

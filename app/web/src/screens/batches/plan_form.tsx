@@ -7,9 +7,9 @@ import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
-import type {Wish as Said} from '../../ui/schema';
+import type {Wish as Said} from '../../ui/request_schema';
 import {More} from '../../ui/schema_form';
-import {queueJob} from '../jobs/state';
+import {queueJob} from '../jobs/jobs';
 import {aims, firstWish, requestOf, scopeInWords, type Scope, type Wish} from './plan';
 
 /** What the form and the choice of sessions say. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Axes} from '../../ui/axes';
-import {Cloth} from '../../ui/cloth';
+import {Cloth} from '../../ui/cloth_name';
 import {lanesOf, logScale} from '../../ui/plot_scale';
 import {counted, degrees, degreesOn} from '../../ui/say';
 import {Table} from '../../ui/table';

@@ -4,14 +4,14 @@ import {answer, api, type Schemas} from '../../api/client';
 import {clothOf} from '../../state/cloths';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
-import {Cloth} from '../../ui/cloth';
+import {Cloth} from '../../ui/cloth_name';
 import {Complaint} from '../../ui/complaint';
 import {Dialog} from '../../ui/dialog';
 import {Mark} from '../../ui/mark';
 import {counted, degrees, degreesOn, digits} from '../../ui/say';
 import {Table} from '../../ui/table';
 import {percentOf} from '../../ui/words';
-import {acceptanceInWords, changeInCells, type Report} from './report';
+import {acceptanceInWords, changeInCells, type Report} from './changes';
 
 interface ReportProps {
   name: string;

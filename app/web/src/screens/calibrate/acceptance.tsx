@@ -6,7 +6,7 @@ import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Mark} from '../../ui/mark';
-import {accept, askCalibrations, calibrations} from './state';
+import {accept, askCalibrations, calibrations} from './calibrations';
 
 type Change = Awaited<ReturnType<typeof accept>>;
 

@@ -3,13 +3,13 @@
 import {useState} from 'preact/hooks';
 import {asApiError, type ApiError} from '../../api/client';
 import {Button} from '../../ui/button';
-import {Cloth} from '../../ui/cloth';
+import {Cloth} from '../../ui/cloth_name';
 import {Complaint} from '../../ui/complaint';
 import {counted, degrees} from '../../ui/say';
 import {Table} from '../../ui/table';
 import {timeOf} from '../../ui/words';
-import {planChosen} from '../batches/choose';
-import {queueJob} from '../jobs/state';
+import {planChosen} from '../batches/plan_chosen';
+import {queueJob} from '../jobs/jobs';
 import type {Affected} from './history';
 
 interface AffectedSessionsProps {

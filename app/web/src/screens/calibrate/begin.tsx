@@ -5,9 +5,9 @@ import {forms} from '../../state/forms';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
-import {schemaOf, type Wish} from '../../ui/schema';
+import {schemaOf, type Wish} from '../../ui/request_schema';
 import {SchemaForm} from '../../ui/schema_form';
-import {known, workOn} from './state';
+import {known, workOn} from './calibrations';
 import {fromOf, setOf, type Stage, type Walk} from './walk';
 
 type Thing = NonNullable<Stage['thing']>;

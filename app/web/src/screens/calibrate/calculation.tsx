@@ -8,12 +8,12 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {listIn, textIn} from '../../ui/fields';
 import {Mark} from '../../ui/mark';
-import type {Wish} from '../../ui/schema';
+import type {Wish} from '../../ui/request_schema';
 import {More} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
 import {errorOf} from '../jobs/price';
-import {cancel, queueJob} from '../jobs/state';
-import {known} from './state';
+import {cancel, queueJob} from '../jobs/jobs';
+import {known} from './calibrations';
 import {findingsIn, hasResult, notesBeside, jobOf, requestOf, standingOf, type Job, type JobRequest, type Stage, type Walk} from './walk';
 
 interface CalculationProps {

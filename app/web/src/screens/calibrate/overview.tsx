@@ -14,7 +14,7 @@ import {AffectedSessions} from './affected';
 import {DatedPlot} from './dated_plot';
 import {seriesOfCamera, seriesOfFluxes, seriesOfPlaces} from './history';
 import {LightPlanPanel} from './light_plan_panel';
-import {calibrations, complaint, findings, history, isKnown, known, work} from './state';
+import {calibrations, complaint, findings, history, isKnown, known, work} from './calibrations';
 import {currentStage, freeName, walkOfSet, walksIn, type CheckResult, type Listed, type WalkKind} from './walk';
 
 const parts = [

@@ -16,7 +16,7 @@ import {Answer, Photographs} from './photographs';
 import {
   coverageOf, figuresOf, isMet, lastUsed, outlineFound, outlineWanted, shareOf, takenBy, type Figure, type PhotographSet,
 } from './photograph_set';
-import {leaveOut, photograph} from './state';
+import {leaveOut, photograph} from './calibrations';
 
 interface Choice {
   name: string;

@@ -9,12 +9,12 @@ import {textIn} from '../../ui/fields';
 import {Mark, type Verdict} from '../../ui/mark';
 import {errorOf} from '../jobs/price';
 import {stateOf} from '../jobs/queue';
-import {jobs, queueJob} from '../jobs/state';
+import {jobs, queueJob} from '../jobs/jobs';
 import {Acceptance} from './acceptance';
 import {Begin} from './begin';
 import {Calculation} from './calculation';
 import {SetPanel} from './set_panel';
-import {complaint, isKnown, known, work} from './state';
+import {complaint, isKnown, known, work} from './calibrations';
 import {
   currentStage, hasResult, isUnharmed, madeBy, setOf, stagesOf, standingOf, trialOf, type JobRequest, type Stage, type Standing, type Walk,
 } from './walk';

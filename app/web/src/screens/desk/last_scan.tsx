@@ -5,12 +5,12 @@ import {rig} from '../../state/rig';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
-import {useLatest} from '../../ui/latest';
+import {useLatest} from '../../ui/use_latest';
 import {Mark} from '../../ui/mark';
 import {digits} from '../../ui/say';
 import {percentOf} from '../../ui/words';
 import {Price} from '../jobs/price';
-import {useJobs} from '../jobs/state';
+import {useJobs} from '../jobs/jobs';
 import {exposedOf, lessThan, type Exposed} from './clipping';
 import {followSolve, relitPicture, shootAgain, type Frame, type Session} from './scan';
 

@@ -3,7 +3,7 @@
 import {useEffect, useState} from 'preact/hooks';
 import {type ApiError, asApiError, type Schemas} from '../../api/client';
 import {hasEnded, type Job} from '../jobs/queue';
-import {cancel, jobs, putFirst, queueJob} from '../jobs/state';
+import {cancel, jobs, putFirst, queueJob} from '../jobs/jobs';
 import type {Recipe} from './recipe';
 
 const pause_ms = 400;

@@ -2,7 +2,7 @@
 import {useState} from 'preact/hooks';
 import {asApiError, type ApiError} from '../../api/client';
 import {titleOf} from '../../state/forms';
-import {Cloth} from '../../ui/cloth';
+import {Cloth} from '../../ui/cloth_name';
 import {textIn} from '../../ui/fields';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
@@ -11,7 +11,7 @@ import {Share} from '../../ui/share';
 import {durationOf, timeOf} from '../../ui/words';
 import {errorOf} from './price';
 import {hasEnded, stateOf, wishOf, type Job} from './queue';
-import {cancel, forget, putFirst, retry} from './state';
+import {cancel, forget, putFirst, retry} from './jobs';
 
 interface JobRowProps {
   job: Job;

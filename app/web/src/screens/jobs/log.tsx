@@ -6,7 +6,7 @@ import {Copy} from '../../ui/copy';
 import {Dialog} from '../../ui/dialog';
 import {titleOf} from '../../state/forms';
 import type {Job} from './queue';
-import {logOf} from './state';
+import {logOf} from './jobs';
 
 /** What the verb of a job said. */
 export function Log({job, onClose}: {job: Job; onClose: () => void}) {

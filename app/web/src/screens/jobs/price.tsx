@@ -6,11 +6,11 @@ import {asApiError, type ApiError, type Schemas} from '../../api/client';
 import {clothOf} from '../../state/cloths';
 import {formOf, type Quality} from '../../state/forms';
 import {Button} from '../../ui/button';
-import {Cloth} from '../../ui/cloth';
+import {Cloth} from '../../ui/cloth_name';
 import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
 import {degrees, degreesOn} from '../../ui/say';
-import type {Wish} from '../../ui/schema';
+import type {Wish} from '../../ui/request_schema';
 import {More} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
 import {Table} from '../../ui/table';
@@ -19,7 +19,7 @@ import {Crops} from './crops';
 import {drawable, levelsIn, worthwhile, type Level} from './ladder';
 import {LadderPlot} from './ladder_plot';
 import {hasEnded, type Job} from './queue';
-import {jobs, queueJob} from './state';
+import {jobs, queueJob} from './jobs';
 
 /** What a level that was priced says. */
 const saidHere = ['session', 'quality', 'method', 'within_s', 'to_deg'];

@@ -9,7 +9,7 @@ import {textIn} from '../../ui/fields';
 import {addressOfViewer, FIRST_SIGHT} from '../viewer/sight';
 import {errorOf} from './price';
 import {hasEnded} from './queue';
-import {jobs, queueJob, useJobs} from './state';
+import {jobs, queueJob, useJobs} from './jobs';
 
 export function TortureScene() {
   useJobs();

@@ -10,10 +10,10 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
 import {hasEnded} from '../jobs/queue';
-import {jobs, queueJob, useJobs} from '../jobs/state';
-import {useLatest} from '../../ui/latest';
+import {jobs, queueJob, useJobs} from '../jobs/jobs';
+import {useLatest} from '../../ui/use_latest';
 import {JobLine} from './job_line';
-import {placeOfMaterial} from './sight';
+import {placeOfMaterial} from './material_sight';
 
 const MOST = 100;
 

@@ -8,16 +8,16 @@ import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
-import {useLatest} from '../../ui/latest';
+import {useLatest} from '../../ui/use_latest';
 import {Mark} from '../../ui/mark';
-import type {Wish} from '../../ui/schema';
+import type {Wish} from '../../ui/request_schema';
 import {More} from '../../ui/schema_form';
 import {bytesOf} from '../../ui/words';
 import {hasEnded} from '../jobs/queue';
-import {jobs, queueJob, useJobs} from '../jobs/state';
+import {jobs, queueJob, useJobs} from '../jobs/jobs';
 import {addressOfExports, addressOfFile, type ExportFile, filesOf, type Price, priceInWords, pricesOf, requestOf} from './exports';
 import {JobLine} from './job_line';
-import type {MaterialName} from './sight';
+import type {MaterialName} from './material_sight';
 
 const saidHere = ['session', 'material', 'set', 'presets', 'draft'];
 

@@ -4,7 +4,7 @@ import type {Schemas} from '../../api/client';
 import {fieldsOf, listIn, numberIn, textIn} from '../../ui/fields';
 import {digits} from '../../ui/say';
 import {bytesOf} from '../../ui/words';
-import {addressOfMaterial, type MaterialName} from './sight';
+import {addressOfMaterial, type MaterialName} from './material_sight';
 
 export interface ExportFile {
   file: string;

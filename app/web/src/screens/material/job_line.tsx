@@ -6,7 +6,7 @@ import {Mark} from '../../ui/mark';
 import {Share} from '../../ui/share';
 import {errorOf} from '../jobs/price';
 import {hasEnded, type Job} from '../jobs/queue';
-import {cancel} from '../jobs/state';
+import {cancel} from '../jobs/jobs';
 
 /** How a job is, with a way to end it; what went wrong of one that failed. */
 export function JobLine({job}: {job: Job}) {

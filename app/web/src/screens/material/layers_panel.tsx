@@ -11,9 +11,9 @@ import {Mark} from '../../ui/mark';
 import {Table} from '../../ui/table';
 import {percentOf} from '../../ui/words';
 import {hasEnded} from '../jobs/queue';
-import {jobs, queueJob, useJobs} from '../jobs/state';
+import {jobs, queueJob, useJobs} from '../jobs/jobs';
 import {JobLine} from './job_line';
-import {placeOfMaterial} from './sight';
+import {placeOfMaterial} from './material_sight';
 import {Slider} from './slider';
 import {builtBy, fileName, movedBy, ownValues, requestOf, stackOf, type StackLayer, type Value, valueInWords, type Wish, wishesOf} from './stack';
 

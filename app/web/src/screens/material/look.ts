@@ -9,7 +9,7 @@ import {fieldsOf} from '../../ui/fields';
 import {layersOf, parametersOf, shadedBy} from './parameters';
 import {pxPerMm} from './screen_scale';
 import {type Cloth, laidOut} from './shape';
-import {addressOfMaterial, type MaterialName, queryOf, type Sight, sightOf} from './sight';
+import {addressOfMaterial, type MaterialName, queryOf, type Sight, sightOf} from './material_sight';
 
 const WRITE_MS = 250;
 

@@ -8,7 +8,7 @@ import type {Look} from './look';
 import type {Parameter} from './parameters';
 import {BROWSER_PX_PER_MM, CARD_MM, keep, measured, pxPerMm} from './screen_scale';
 import {Slider} from './slider';
-import {BALLS_MM, MOST_LEAN_DEG, REPEATS, type Shape} from './sight';
+import {BALLS_MM, MOST_LEAN_DEG, REPEATS, type Shape} from './material_sight';
 
 const shapes: readonly {shape: Shape; says: string; key: string}[] = [
   {shape: 'ball', says: 'Ball', key: 'b'},

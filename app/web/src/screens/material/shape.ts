@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How large a cloth is on the canvas: one truth of millimetres, whatever it is laid on.
 import type {Size} from '../../gl/view';
-import type {Sight} from './sight';
+import type {Sight} from './material_sight';
 
 export interface Cloth {
   /** Of one piece. */

@@ -8,7 +8,7 @@ import {useKeys} from '../../state/keys';
 import {lengthInWords, roundBelow} from '../viewer/bars';
 import {lightAt, lightInWords, nudged, placeOf} from '../viewer/light';
 import type {Look} from './look';
-import type {Shape} from './sight';
+import type {Shape} from './material_sight';
 import {titleOf} from './title';
 
 const BAR_PX = 160;

@@ -5,7 +5,7 @@ import {answer, api, type Schemas} from '../../api/client';
 import {clothOf} from '../../state/cloths';
 import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
-import {useLatest} from '../../ui/latest';
+import {useLatest} from '../../ui/use_latest';
 import {degrees} from '../../ui/say';
 import {percentOf} from '../../ui/words';
 import {DIFFERENCES} from './layers';

@@ -3,7 +3,7 @@
 import {useState} from 'preact/hooks';
 import {answer, api, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
-import {useLatest} from '../../ui/latest';
+import {useLatest} from '../../ui/use_latest';
 import {textOf} from './sight';
 
 export type MapSet = Schemas['MapSetSummary'];

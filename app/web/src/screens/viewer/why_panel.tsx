@@ -2,7 +2,7 @@
 import {useState} from 'preact/hooks';
 import {answer, api, type ApiError, asApiError} from '../../api/client';
 import {Complaint} from '../../ui/complaint';
-import {useLatest} from '../../ui/latest';
+import {useLatest} from '../../ui/use_latest';
 import {digits} from '../../ui/say';
 import type {SolveName} from './sight';
 import {type Gate, type LeftOutCheck, partsOf, type Report, type Stage, stagesOf} from './why';

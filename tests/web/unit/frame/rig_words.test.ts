@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {expect, test} from 'vitest';
 import type {Schemas} from '../../../../app/web/src/api/client';
-import {stateInWords, verdictOf} from '../../../../app/web/src/frame/words';
+import {stateInWords, verdictOf} from '../../../../app/web/src/frame/rig_words';
 
 type Status = Schemas['Status'];
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {expect, test} from 'vitest';
-import {acceptanceInWords, changeInCells} from '../../../../app/web/src/screens/batches/report';
+import {acceptanceInWords, changeInCells} from '../../../../app/web/src/screens/batches/changes';
 
 test('a change is angles, albedo and sigma', () => {
   const change = {mean_deg: 3.456, p95_deg: 12, albedo_bias_rel: 0.0123, sigma_deg: {before: 0.5, after: 0.91}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {describe, expect, test} from 'vitest';
-import {isWrong, keptBy, labelOf, rangeInWords, schemaOf, type SchemaField, valueOf, withValue, wordsOf} from '../../../../app/web/src/ui/schema';
+import {isWrong, keptBy, labelOf, rangeInWords, schemaOf, type SchemaField, valueOf, withValue, wordsOf} from '../../../../app/web/src/ui/request_schema';
 
 const schema = schemaOf({
   required: ['kind', 'session'],

@@ -8,7 +8,7 @@ import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
 import {Table} from '../../ui/table';
 import {durationOf, timeOf} from '../../ui/words';
-import {useJobs} from '../jobs/state';
+import {useJobs} from '../jobs/jobs';
 import {BatchPage} from './batch_page';
 import {scopeIn} from './plan';
 import {PlanForm} from './plan_form';

@@ -8,7 +8,7 @@ import {forms} from '../../state/forms';
 import {withDevicesFree} from '../desk/devices';
 import type {Fields} from '../../ui/fields';
 import {hasEnded} from '../jobs/queue';
-import {jobs, useJobs} from '../jobs/state';
+import {jobs, useJobs} from '../jobs/jobs';
 import {historyOf, noHistory, type History} from './history';
 import type {PhotographSet} from './photograph_set';
 import type {Known, Listed, Part} from './walk';

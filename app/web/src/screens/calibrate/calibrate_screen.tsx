@@ -2,7 +2,7 @@
 import './calibrate.css';
 import {place} from '../../state/address';
 import {Overview} from './overview';
-import {useCalibrations} from './state';
+import {useCalibrations} from './calibrations';
 import {WalkPage} from './walk_page';
 import type {Walk} from './walk';
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {expect, test} from 'vitest';
-import {addressOfMaterial, FIRST, nameOf, placeOfMaterial, queryOf, type Sight, sightOf} from '../../../../app/web/src/screens/material/sight';
+import {addressOfMaterial, FIRST, nameOf, placeOfMaterial, queryOf, type Sight, sightOf} from '../../../../app/web/src/screens/material/material_sight';
 
 function again(sight: Sight): Sight {
   const query = new URLSearchParams();

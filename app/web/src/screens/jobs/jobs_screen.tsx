@@ -9,7 +9,7 @@ import {JobRow} from './job_row';
 import {Log} from './log';
 import {Price} from './price';
 import type {Job} from './queue';
-import {askOlder, complaint, jobs, olderThan, queue, useJobs} from './state';
+import {askOlder, complaint, jobs, olderThan, queue, useJobs} from './jobs';
 
 /** What the daemon works at, what waits and what was done; and what each level would cost for a session. */
 export default function JobsScreen() {

@@ -13,7 +13,7 @@ import {ExportPanel} from './export_panel';
 import {LayersPanel} from './layers_panel';
 import {Look} from './look';
 import {LookPanel} from './look_panel';
-import {type MaterialName, nameOf, type Panel, PANELS, placeOfMaterial} from './sight';
+import {type MaterialName, nameOf, type Panel, PANELS, placeOfMaterial} from './material_sight';
 import {Stage} from './stage';
 import {titleOf} from './title';
 
