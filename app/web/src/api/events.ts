@@ -18,9 +18,9 @@ export interface Events {
   gap: Record<string, never>;
   heartbeat: Record<string, never>;
 }
-export type Kind = keyof Events;
+export type EventKind = keyof Events;
 
-const kinds: Kind[] = ['status', 'frame', 'job', 'shot', 'control', 'calibration', 'gap', 'heartbeat'];
+const kinds: EventKind[] = ['status', 'frame', 'job', 'shot', 'control', 'calibration', 'gap', 'heartbeat'];
 const delays_s = [0.2, 1, 2, 5, 10];
 /** The daemon says something every second. */
 const silence_s = 2.5;
@@ -36,10 +36,10 @@ export interface Connection {
 export const connection = signal<Connection>({state: 'connecting', age_s: 0});
 
 type Handler = (data: unknown) => void;
-const handlers = new Map<Kind, Set<Handler>>();
+const handlers = new Map<EventKind, Set<Handler>>();
 
 /** Calls `handle` with each event of this kind; returns what ends that. */
-export function onEvent<K extends Kind>(kind: K, handle: (data: Events[K]) => void): () => void {
+export function onEvent<K extends EventKind>(kind: K, handle: (data: Events[K]) => void): () => void {
   const those = handlers.get(kind) ?? new Set<Handler>();
   handlers.set(kind, those.add(handle as Handler));
   return () => those.delete(handle as Handler);
@@ -47,7 +47,7 @@ export function onEvent<K extends Kind>(kind: K, handle: (data: Events[K]) => vo
 
 interface Message {
   /** broken: the daemon cannot be reached. */
-  kind: Kind | 'broken';
+  kind: EventKind | 'broken';
   data: unknown;
 }
 
@@ -116,7 +116,7 @@ class Listener {
     this.source = null;
   }
 
-  private take(kind: Kind, text: string): void {
+  private take(kind: EventKind, text: string): void {
     this.expectHeartbeat();
     this.tell({kind, data: JSON.parse(text)});
   }

@@ -2,7 +2,7 @@
 // The maps of a cloth as whole textures with their means at every scale, and the pass that shades them.
 import {fetched} from '../api/client';
 import {CLOTH} from './cloth_shader';
-import type {Kind} from './formats';
+import type {TileKind} from './formats';
 import {shareTexels, TABLE_SIDE} from './lobes';
 import {Program} from './program';
 import type {Vector} from './scene';
@@ -20,7 +20,7 @@ type Target = (typeof TARGETS)[number];
 /** A layer of the maps, and where in the textures it goes. */
 export interface ClothLayer {
   layer: string;
-  kind: Kind;
+  kind: TileKind;
   target: Target;
   /** Of a scalar: which of the target's channels. */
   channel?: number;

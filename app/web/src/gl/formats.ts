@@ -3,10 +3,10 @@
 import type {Size} from './view';
 
 /** normal: RGB10_A2 with 1022 steps; color: three half floats; scalar: one; flags: a byte. */
-export type Kind = 'normal' | 'color' | 'scalar' | 'flags';
+export type TileKind = 'normal' | 'color' | 'scalar' | 'flags';
 
-const bytesPerPixel: Record<Kind, number> = {normal: 4, color: 6, scalar: 2, flags: 1};
+const bytesPerPixel: Record<TileKind, number> = {normal: 4, color: 6, scalar: 2, flags: 1};
 
-export function tileBytes(kind: Kind, size: Size): number {
+export function tileBytes(kind: TileKind, size: Size): number {
   return bytesPerPixel[kind] * size.width * size.height;
 }

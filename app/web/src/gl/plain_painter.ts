@@ -2,7 +2,7 @@
 // Paints scenes where the browser has no WebGL 2: the daemon shades the tiles, a 2D canvas shows them.
 import {fetched} from '../api/client';
 import {Painter} from './painter';
-import {type Form, type Look, type Scene, type Sheet, type Side, addressOf, addressesOf, drawnOf} from './scene';
+import {type Scene, type SceneLook, type Sheet, type Side, type TileForm, addressOf, addressesOf, drawnOf} from './scene';
 import {TileStore} from './tile_store';
 import {type Tile, boxOnCanvas, repeats, tileBox} from './tiles';
 import {type Size, clamp} from './view';
@@ -13,7 +13,7 @@ function rounded(value: number): string {
 }
 
 /** The pictures of a side, as the daemon is asked for them. */
-export function pictureOf(side: Side, look: Look): {sheet: Sheet; form: Form} {
+export function pictureOf(side: Side, look: SceneLook): {sheet: Sheet; form: TileForm} {
   const sheet = (layer: string, words: Record<string, string>): Sheet => ({
     maps: side.maps,
     pyramid: side.pyramid,
@@ -92,7 +92,7 @@ export class PlainPainter extends Painter {
     this.context.restore();
   }
 
-  private draw(sheet: Sheet, form: Form, scene: Scene, canvas: Size): void {
+  private draw(sheet: Sheet, form: TileForm, scene: Scene, canvas: Size): void {
     this.context.imageSmoothingEnabled = scene.view.zoom < 1;
     const tileAt = (tile: Tile) => this.store.get(addressOf(sheet, tile, form));
     for (const tile of drawnOf(sheet.pyramid, scene, canvas, (each) => tileAt(each) !== undefined)) {

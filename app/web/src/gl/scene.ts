@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is to be seen, and which tiles of which layers it takes.
-import type {Kind} from './formats';
+import type {TileKind} from './formats';
 import type {Rgb} from './heat';
 import type {Mode} from './shaders';
 import type {LayerName} from './surface';
@@ -25,7 +25,7 @@ export interface Side {
   bits: readonly string[];
 }
 
-export interface Look {
+export interface SceneLook {
   /** To the light, unit, rig frame: x right, y up, z to the camera. */
   light: Vector;
   exposure: number;
@@ -45,7 +45,7 @@ export interface Scene {
   sides: readonly Side[];
   /** Share of the canvas's width. */
   divider: number;
-  look: Look;
+  look: SceneLook;
   repeat: Repeat;
   /** A hand moves the light: half the resolution will do. */
   is_moving: boolean;
@@ -57,13 +57,13 @@ export interface Sheet {
   pyramid: Pyramid;
   layer: string;
   query: string;
-  kind: Kind;
+  kind: TileKind;
   target: LayerName;
   /** Of flags: which of the target's four channels. */
   channel: number;
 }
 
-function sheetOf(side: Side, layer: string, kind: Kind, target: LayerName): Sheet {
+function sheetOf(side: Side, layer: string, kind: TileKind, target: LayerName): Sheet {
   return {maps: side.maps, pyramid: side.pyramid, layer, query: '', kind, target, channel: 0};
 }
 
@@ -87,9 +87,9 @@ export function sheetsOf(side: Side, all_bits: readonly string[]): Sheet[] {
 }
 
 /** raw: for programs. png, jpg: for people. */
-export type Form = 'raw' | 'png' | 'jpg';
+export type TileForm = 'raw' | 'png' | 'jpg';
 
-export function addressOf(sheet: Sheet, tile: Tile, form: Form = 'raw'): string {
+export function addressOf(sheet: Sheet, tile: Tile, form: TileForm = 'raw'): string {
   return `${sheet.maps}/tiles/${sheet.layer}/${tile.level}/${tile.column}_${tile.row}.${form}${sheet.query}`;
 }
 
@@ -126,7 +126,7 @@ export function drawnOf(pyramid: Pyramid, scene: Scene, canvas: Size, is_there: 
 }
 
 /** Addresses of all that a scene needs, in the order in which they are wanted. */
-export function addressesOf(sheets: readonly Sheet[], scene: Scene, canvas: Size, form: Form = 'raw'): string[] {
+export function addressesOf(sheets: readonly Sheet[], scene: Scene, canvas: Size, form: TileForm = 'raw'): string[] {
   const overviews: string[] = [];
   const tiles: {address: string; turn: number}[] = [];
   for (const sheet of sheets) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tiles are drawn into textures of the canvas's size, one a layer; one pass over them makes the picture. So a light
 // that moves costs that pass alone and touches no tile.
-import type {Kind} from './formats';
+import type {TileKind} from './formats';
 import {HEAT_STEPS, type Rgb, heatTexels} from './heat';
 import {Program} from './program';
 import {COPY, COPY_SHARE, type Mode, RECTANGLE, shading} from './shaders';
@@ -71,7 +71,7 @@ export class Surface {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, HEAT_STEPS, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, heatTexels());
   }
 
-  upload(kind: Kind, size: Size, bytes: ArrayBuffer): TileTexture {
+  upload(kind: TileKind, size: Size, bytes: ArrayBuffer): TileTexture {
     const texture = this.sampled(this.gl.LINEAR);
     fillTexture(this.gl, kind, size, bytes);
     return {texture, ...size, bytes: bytes.byteLength};

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tiles as WebGL takes them.
-import type {Kind} from './formats';
+import type {TileKind} from './formats';
 import type {Size} from './view';
 
-const uploads = (gl: WebGL2RenderingContext): Record<Kind, [GLenum, GLenum, GLenum]> => ({
+const uploads = (gl: WebGL2RenderingContext): Record<TileKind, [GLenum, GLenum, GLenum]> => ({
   normal: [gl.RGB10_A2, gl.RGBA, gl.UNSIGNED_INT_2_10_10_10_REV],
   color: [gl.RGB16F, gl.RGB, gl.HALF_FLOAT],
   scalar: [gl.R16F, gl.RED, gl.HALF_FLOAT],
   flags: [gl.R8, gl.RED, gl.UNSIGNED_BYTE],
 });
 
-function valuesOf(kind: Kind, bytes: ArrayBuffer): ArrayBufferView {
+function valuesOf(kind: TileKind, bytes: ArrayBuffer): ArrayBufferView {
   if (kind === 'normal') return new Uint32Array(bytes);
   if (kind === 'flags') return new Uint8Array(bytes);
   return new Uint16Array(bytes);
@@ -20,7 +20,7 @@ function valuesOf(kind: Kind, bytes: ArrayBuffer): ArrayBufferView {
 export const NORMAL_SCALE = [1023 / 511, -1] as const;
 
 /** The texture that is bound gets the texels of a tile. */
-export function fillTexture(gl: WebGL2RenderingContext, kind: Kind, size: Size, bytes: ArrayBuffer): void {
+export function fillTexture(gl: WebGL2RenderingContext, kind: TileKind, size: Size, bytes: ArrayBuffer): void {
   const [internal, format, type] = uploads(gl)[kind];
   gl.texImage2D(gl.TEXTURE_2D, 0, internal, size.width, size.height, 0, format, type, valuesOf(kind, bytes));
 }

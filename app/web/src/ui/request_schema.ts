@@ -2,10 +2,10 @@
 // What a request may say, by its JSON Schema, as a form needs it.
 import {fieldsOf, isFields, listIn, numberIn, textIn, textsIn} from './fields';
 
-export type Value = boolean | number | string | (number | string)[] | Wish[];
+export type FieldValue = boolean | number | string | (number | string)[] | Wish[];
 /** What somebody said of the fields. */
 export interface Wish {
-  readonly [field: string]: Value;
+  readonly [field: string]: FieldValue;
 }
 
 export type Holds = 'flag' | 'word' | 'words' | 'number' | 'whole' | 'numbers' | 'text' | 'list';
@@ -20,7 +20,7 @@ export interface SchemaField {
   /** The least is not among them. */
   isAbove: boolean;
   most: number | null;
-  otherwise: Value | null;
+  otherwise: FieldValue | null;
   /** What it names: a session, a folder, a file. */
   names: string;
   /** Of a list of things what each may say. */
@@ -58,7 +58,7 @@ function fieldOf(name: string, property: unknown, isNeeded: boolean): SchemaFiel
     least: above ?? numberIn(one, 'minimum'),
     isAbove: above !== null,
     most: numberIn(one, 'maximum'),
-    otherwise: (fieldsOf(property)['default'] as Value | undefined) ?? null,
+    otherwise: (fieldsOf(property)['default'] as FieldValue | undefined) ?? null,
     names: textIn(one, 'x-names'),
     each: isOfThings ? schemaOf(one) : null,
     isNeeded,
@@ -116,7 +116,7 @@ function isWithin({holds, least, isAbove, most}: SchemaField, value: number): bo
 }
 
 /** What was typed as the request says it; null: nothing. What is no number stays as it is, and the daemon says so. */
-export function valueOf(field: SchemaField, text: string): Value | null {
+export function valueOf(field: SchemaField, text: string): FieldValue | null {
   if (text.trim() === '') return null;
   if (field.holds === 'number' || field.holds === 'whole') return numberOf(text) ?? text;
   const parts = text.split(',').map((part) => part.trim()).filter((part) => part !== '');
@@ -124,7 +124,7 @@ export function valueOf(field: SchemaField, text: string): Value | null {
   return field.holds === 'words' ? parts : text.trim();
 }
 
-export function isWrong(field: SchemaField, value: Value | undefined): boolean {
+export function isWrong(field: SchemaField, value: FieldValue | undefined): boolean {
   if (value === undefined) return false;
   if (field.holds === 'number' || field.holds === 'whole') return typeof value !== 'number' || !isWithin(field, value);
   if (field.holds === 'numbers') return (value as unknown[]).some((each) => typeof each !== 'number' || !isWithin(field, each));
@@ -138,7 +138,7 @@ export function keptBy({apart}: Schema, name: string, said: readonly string[]): 
 }
 
 /** The wish with one field said otherwise; null: not said. */
-export function withValue(wish: Wish, name: string, value: Value | null): Wish {
+export function withValue(wish: Wish, name: string, value: FieldValue | null): Wish {
   const {[name]: before, ...others} = wish;
   return value === null ? others : {...others, [name]: value};
 }

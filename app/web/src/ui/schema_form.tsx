@@ -4,7 +4,7 @@ import {useState} from 'preact/hooks';
 import {Button} from './button';
 import {Choice} from './choice';
 import {Field} from './field';
-import {isWrong, keptBy, labelOf, rangeInWords, type Schema, type SchemaField, type Value, valueOf, type Wish, withValue} from './request_schema';
+import {type FieldValue, isWrong, keptBy, labelOf, rangeInWords, type Schema, type SchemaField, valueOf, type Wish, withValue} from './request_schema';
 
 interface SchemaFormProps {
   schema: Schema;
@@ -31,10 +31,10 @@ export function SchemaForm({schema, wish, onWish, without = [], prefix = 'option
 interface LineProps {
   id: string;
   field: SchemaField;
-  value: Value | undefined;
+  value: FieldValue | undefined;
   /** Another field that was said in its place. */
   keeper: string | null;
-  onValue: (value: Value | null) => void;
+  onValue: (value: FieldValue | null) => void;
 }
 
 function Line({id, field, value, keeper, onValue}: LineProps) {

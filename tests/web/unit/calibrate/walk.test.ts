@@ -2,8 +2,9 @@
 import {describe, expect, test} from 'vitest';
 import {
   currentStage, findingsIn, freeName, fromOf, isUnharmed, jobOf, madeBy, notesBeside, requestOf, stagesOf, standingOf, trialOf, walkOfSet, walksIn,
-  type CheckResult, type Job, type Known, type Listed, type Stage, type Walk, type Walks,
+  type CheckResult, type Known, type Listed, type Walk, type Walks, type WalkStage,
 } from '../../../../app/web/src/screens/calibrate/walk';
+import type {Job} from '../../../../app/web/src/screens/jobs/queue';
 import type {PhotographSet} from '../../../../app/web/src/screens/calibrate/photograph_set';
 
 const all: Walk = {kind: 'all', name: 'first'};
@@ -29,7 +30,7 @@ function sheets(...photographs: [name: string, used: boolean][]): PhotographSet 
   } as Partial<PhotographSet> as PhotographSet;
 }
 
-function stageOf(result: string, part: Stage['part'], job: Stage['job'], changes: Partial<Stage> = {}): Stage {
+function stageOf(result: string, part: WalkStage['part'], job: WalkStage['job'], changes: Partial<WalkStage> = {}): WalkStage {
   return {result, part, job, title: result, about: '', thing: null, is_optional: false, is_aside: false, is_photographed: false, ...changes};
 }
 
@@ -52,7 +53,7 @@ const walks: Walks = {
 const rigs = listed('calibration', {is_rigs: true});
 const bare: Known = {calibrations: [rigs], checks: [], jobs: [], series: [], walks};
 
-function stage(walk: Walk, result: string): Stage {
+function stage(walk: Walk, result: string): WalkStage {
   const found = stagesOf(walk, bare).find((each) => each.result === result);
   if (!found) throw new Error(`there is no stage ${result}`);
   return found;

@@ -2,14 +2,14 @@
 import {describe, expect, test} from 'vitest';
 import {factsInWords} from '../../../../app/web/src/screens/finish/found';
 import {requestOf} from '../../../../app/web/src/screens/finish/making';
-import {changed, type History, historyIn, keysOfBox, moved, nothing, recipeOfSet, redone, stepOf, undone, withKeys, without, type StepKind} from '../../../../app/web/src/screens/finish/recipe';
+import {changed, historyIn, keysOfBox, moved, nothing, type RecipeHistory, recipeOfSet, redone, stepOf, undone, withKeys, without, type StepKind} from '../../../../app/web/src/screens/finish/recipe';
 import {maybeIn, numbersIn, spotsIn, textOfSpots} from '../../../../app/web/src/screens/finish/step_form';
 
 const crop: StepKind = {
   name: 'crop', says: 'Cuts',
   keys: ['left_mm', 'top_mm'].map((name) => ({name, says: '', holds: 'number', default: 0, least: 0, most: 100, words: []})),
 };
-const names = ({now}: History) => now.map((step) => step.do);
+const names = ({now}: RecipeHistory) => now.map((step) => step.do);
 
 describe('a recipe', () => {
   const recipe = [{do: 'flatten'}, {do: 'straighten'}, {do: 'tile'}];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {expect, test} from 'vitest';
-import {addressOfMaterial, FIRST, nameOf, placeOfMaterial, queryOf, type Sight, sightOf} from '../../../../app/web/src/screens/material/material_sight';
+import {addressOfMaterial, FIRST, nameOf, placeOfMaterial, type MaterialSight, queryOf, sightOf} from '../../../../app/web/src/screens/material/material_sight';
 
-function again(sight: Sight): Sight {
+function again(sight: MaterialSight): MaterialSight {
   const query = new URLSearchParams();
   for (const [name, word] of Object.entries(queryOf(sight))) if (word !== null) query.set(name, word);
   return sightOf(query);
@@ -10,7 +10,7 @@ function again(sight: Sight): Sight {
 
 test('what is seen stands in the address, and at first nothing does', () => {
   expect(Object.values(queryOf(FIRST)).every((word) => word === null)).toBe(true);
-  const sight: Sight = {
+  const sight: MaterialSight = {
     shape: 'plane', repeat: 3, ball_mm: 150, lean_deg: 40, light: [0.6, 0, 0.8], exposure: -1.5, surroundings: 0, typed: {roughness: 0.4, sheen: 0.25}, panel: 'export',
   };
   expect(again(sight)).toEqual(sight);

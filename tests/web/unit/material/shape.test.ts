@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 import {expect, test} from 'vitest';
-import {type Cloth, laidOut} from '../../../../app/web/src/screens/material/shape';
+import {type ClothExtent, laidOut} from '../../../../app/web/src/screens/material/shape';
 import {FIRST} from '../../../../app/web/src/screens/material/material_sight';
 
 const canvas = {width: 900, height: 600};
-const tile: Cloth = {size_mm: [30, 20], is_known: true, repeats: true};
-const piece: Cloth = {size_mm: [30, 20], is_known: true, repeats: false};
+const tile: ClothExtent = {size_mm: [30, 20], is_known: true, repeats: true};
+const piece: ClothExtent = {size_mm: [30, 20], is_known: true, repeats: false};
 const screen = 4;
 
 test('at true size a millimetre is that of the screen, whatever the cloth', () => {
@@ -17,7 +17,7 @@ test('at true size a millimetre is that of the screen, whatever the cloth', () =
 });
 
 test('what nobody knows the millimetres of is shown at no true size', () => {
-  const unknown: Cloth = {...tile, is_known: false};
+  const unknown: ClothExtent = {...tile, is_known: false};
   expect(laidOut(unknown, {...FIRST, shape: 'true'}, canvas, screen)).toEqual(laidOut(unknown, FIRST, canvas, screen));
 });
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import {describe, expect, test} from 'vitest';
 import {leftOut} from '../../../../app/web/src/screens/sessions/one_session';
-import {changeBetween, problemWith, tagsIn, withTags, withoutTag, type Form} from '../../../../app/web/src/screens/sessions/metadata';
+import {changeBetween, problemWith, tagsIn, withTags, withoutTag, type MetadataTexts} from '../../../../app/web/src/screens/sessions/metadata';
 
-const form: Form = {
+const form: MetadataTexts = {
   fabric: 'satin', id: '', composition: 'silk', construction: '', side: '', notes: '', weight_g_m2: '210', thickness_mm: '', tags: ['red'],
 };
 

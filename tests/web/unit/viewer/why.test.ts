@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 import {expect, test} from 'vitest';
-import {type Report, stagesOf} from '../../../../app/web/src/screens/viewer/why';
+import {type SolveReport, stagesOf} from '../../../../app/web/src/screens/viewer/why';
 
-const least = {id: '1', method: 'standard', warnings: [], status: {}, seconds: {}, reference: null, solved_by: null} as unknown as Report;
+const least = {id: '1', method: 'standard', warnings: [], status: {}, seconds: {}, reference: null, solved_by: null} as unknown as SolveReport;
 
 function stage(report: object, name: string) {
-  const found = stagesOf({...least, ...report} as Report).find((each) => each.name === name);
+  const found = stagesOf({...least, ...report} as SolveReport).find((each) => each.name === name);
   if (!found) throw new Error(`no stage is called ${name}`);
   return found;
 }

@@ -7,21 +7,21 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Dialog} from '../../ui/dialog';
 import {Empty} from '../../ui/empty';
-import {useLatest} from '../../ui/use_latest';
 import {counted} from '../../ui/say';
+import {useLatest} from '../../ui/use_latest';
 import {durationOf} from '../../ui/words';
 import {JobRow} from '../jobs/job_row';
+import {jobs, queueJob} from '../jobs/jobs';
 import {Log} from '../jobs/log';
 import {hasEnded, type Job} from '../jobs/queue';
-import {jobs, queueJob} from '../jobs/jobs';
+import type {BatchReport} from './changes';
 import {PlanView} from './plan_view';
-import type {Report} from './changes';
 import {ReportView} from './report_view';
 
 /** One batch: its plan, how far it is, and what changed. */
 export function BatchPage({name}: {name: string}) {
   const [one, setOne] = useState<Schemas['OneBatch'] | null>(null);
-  const [report, setReport] = useState<Report | null>(null);
+  const [report, setReport] = useState<BatchReport | null>(null);
   const [complaint, complain] = useState<ApiError | null>(null);
   const [isAsked, ask] = useState(false);
   const [accepted, setAccepted] = useState(false);

@@ -4,7 +4,7 @@ import type {Schemas} from '../../api/client';
 import {fieldsOf, numberIn} from '../../ui/fields';
 import {counted, degrees, digits} from '../../ui/say';
 
-export type Report = Schemas['BatchReport'];
+export type BatchReport = Schemas['BatchReport'];
 export type Change = Schemas['BatchChange'];
 
 /** Mean angle, 95th percentile, albedo, sigma of one session. */

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A batch before it is run: what is asked for, and its plan as people read it.
 import type {Schemas} from '../../api/client';
+import type {Wish} from '../../ui/request_schema';
 import {counted} from '../../ui/say';
-import type {Wish as Said} from '../../ui/request_schema';
 import {filtersIn, questionOf} from '../sessions/filters';
 
 export type Plan = NonNullable<Schemas['OneBatch']['plan']>;
@@ -13,14 +13,14 @@ export type Scope = {sessions: string[]; calibration?: string} | {find: Record<s
 export const aims = ['level', 'hours', 'degrees'] as const;
 export type Aim = (typeof aims)[number];
 
-export interface Wish {
+export interface PlanWish {
   aim: Aim;
   quality: string;
   hours: string;
   degrees: string;
 }
 
-export const firstWish: Wish = {aim: 'level', quality: 'standard', hours: '8', degrees: '1'};
+export const firstWish: PlanWish = {aim: 'level', quality: 'standard', hours: '8', degrees: '1'};
 
 /** Where a selection is kept for the form, for as long as the tab is open: an address has no room for it. */
 export const chosenKey = 'weft-plan';
@@ -44,7 +44,7 @@ function above(text: string): number | null {
 }
 
 /** The request; or what is wrong with the wish, as a sentence. */
-export function requestOf(scope: Scope, {aim, quality, hours, degrees}: Wish, said: Said = {}): Schemas['BatchPlanJob'] | string {
+export function requestOf(scope: Scope, {aim, quality, hours, degrees}: PlanWish, said: Wish = {}): Schemas['BatchPlanJob'] | string {
   const hours_h = above(hours);
   const to_deg = above(degrees);
   if ('sessions' in scope && scope.sessions.length === 0) return 'Choose sessions in the library first.';

@@ -7,10 +7,10 @@ import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
-import type {Wish as Said} from '../../ui/request_schema';
+import type {Wish} from '../../ui/request_schema';
 import {More} from '../../ui/schema_form';
 import {queueJob} from '../jobs/jobs';
-import {aims, firstWish, requestOf, scopeInWords, type Scope, type Wish} from './plan';
+import {aims, firstWish, requestOf, scopeInWords, type PlanWish, type Scope} from './plan';
 
 /** What the form and the choice of sessions say. */
 const saidHere = ['sessions', 'find', 'quality', 'to_deg', 'within_s'];
@@ -19,8 +19,8 @@ const aimWords = {level: 'one level for all', hours: 'the best within hours', de
 /** What a batch is to spend, or to reach. Nothing is solved before its plan was seen. */
 export function PlanForm({scope}: {scope: Scope}) {
   const [wish, setWish] = useState(firstWish);
-  const put = <K extends keyof Wish>(key: K) => (value: Wish[K]) => setWish({...wish, [key]: value});
-  const [said, setSaid] = useState<Said>({});
+  const put = <K extends keyof PlanWish>(key: K) => (value: PlanWish[K]) => setWish({...wish, [key]: value});
+  const [said, setSaid] = useState<Wish>({});
   const request = requestOf(scope, wish, said);
   const plan = useAction(async () => {
     if (typeof request !== 'string') go(`/batches/${(await queueJob(request)).of}`);

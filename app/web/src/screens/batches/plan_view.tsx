@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Axes} from '../../ui/axes';
-import {Cloth} from '../../ui/cloth_name';
+import {ClothName} from '../../ui/cloth_name';
 import {lanesOf, logScale} from '../../ui/plot_scale';
 import {counted, degrees, degreesOn} from '../../ui/say';
 import {Table} from '../../ui/table';
@@ -29,7 +29,7 @@ export function PlanView({plan}: {plan: Plan}) {
           rows={plan.jobs.map((job) => ({
             key: job.session,
             cells: [
-              <a href={`/sessions/${job.session}`}><Cloth session={job.session} /></a>, job.quality, durationOf(job.seconds), foretold(degreesOn(job.degrees, job.solved)),
+              <a href={`/sessions/${job.session}`}><ClothName session={job.session} /></a>, job.quality, durationOf(job.seconds), foretold(degreesOn(job.degrees, job.solved)),
               job.turn_deg === null ? '' : degrees(job.turn_deg), job.is_measured ? 'measured' : 'carried over',
             ],
           }))} />
@@ -38,7 +38,7 @@ export function PlanView({plan}: {plan: Plan}) {
         <Leaf title={plan.reasons.map(({reason, sessions, seconds}) => `${sessions} ${reasonInWords(reason)}${seconds > 0 ? ` (${durationOf(seconds)} saved)` : ''}`).join(', ')}
           isOpen={plan.reasons.some(({reason}) => reason === 'unsolvable')}>
           <Table caption="Left out" heads={['Session', 'Why']}
-            rows={plan.left_out_sessions.map(({session, said}) => ({key: session, cells: [<a href={`/sessions/${session}`}><Cloth session={session} /></a>, said]}))} />
+            rows={plan.left_out_sessions.map(({session, said}) => ({key: session, cells: [<a href={`/sessions/${session}`}><ClothName session={session} /></a>, said]}))} />
         </Leaf>
       )}
     </>

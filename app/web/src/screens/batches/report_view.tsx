@@ -4,18 +4,18 @@ import {answer, api, type Schemas} from '../../api/client';
 import {clothOf} from '../../state/cloths';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
-import {Cloth} from '../../ui/cloth_name';
+import {ClothName} from '../../ui/cloth_name';
 import {Complaint} from '../../ui/complaint';
 import {Dialog} from '../../ui/dialog';
 import {Mark} from '../../ui/mark';
 import {counted, degrees, degreesOn, digits} from '../../ui/say';
 import {Table} from '../../ui/table';
 import {percentOf} from '../../ui/words';
-import {acceptanceInWords, changeInCells, type Report} from './changes';
+import {acceptanceInWords, changeInCells, type BatchReport} from './changes';
 
 interface ReportProps {
   name: string;
-  report: Report;
+  report: BatchReport;
   onAccepted: () => void;
 }
 
@@ -58,7 +58,7 @@ export function ReportView({name, report, onAccepted}: ReportProps) {
           rows={report.changes.map((each) => ({
             key: each.session,
             cells: [
-              <a href={`/viewer/${each.session}/${each.solve}`}><Cloth session={each.session} /></a>, ...changeInCells(each),
+              <a href={`/viewer/${each.session}/${each.solve}`}><ClothName session={each.session} /></a>, ...changeInCells(each),
               each.regressions.length > 0 && <Mark verdict="warning">{each.regressions.join('; ')}</Mark>,
             ],
           }))} />
@@ -74,7 +74,7 @@ export function ReportView({name, report, onAccepted}: ReportProps) {
       {report.changes.filter(({picture}) => picture !== null).map(({session, picture}) => (
         <figure key={session}>
           <img src={files + picture} alt={`${clothOf(session)}: before, after, after relit, change`} loading="lazy" />
-          <figcaption class="dim"><Cloth session={session} />: before, after, after relit, change</figcaption>
+          <figcaption class="dim"><ClothName session={session} />: before, after, after relit, change</figcaption>
         </figure>
       ))}
       {isAsked && <Acceptance name={name} worse={report.worse} onClose={() => ask(false)} onAccepted={onAccepted} />}
@@ -83,7 +83,7 @@ export function ReportView({name, report, onAccepted}: ReportProps) {
 }
 
 function Cloths({sessions}: {sessions: readonly string[]}) {
-  return <ul>{sessions.map((session) => <li key={session}><a href={`/sessions/${session}`}><Cloth session={session} /></a></li>)}</ul>;
+  return <ul>{sessions.map((session) => <li key={session}><a href={`/sessions/${session}`}><ClothName session={session} /></a></li>)}</ul>;
 }
 
 interface AcceptanceProps {
@@ -116,7 +116,7 @@ function Acceptance({name, worse, onClose, onAccepted}: AcceptanceProps) {
         </label>
       )}
       {would && would.left_sessions.length > 0 && (
-        <ul>{would.left_sessions.slice(0, 10).map(({session, why}) => <li key={session}><Cloth session={session} />: {why}</li>)}</ul>
+        <ul>{would.left_sessions.slice(0, 10).map(({session, why}) => <li key={session}><ClothName session={session} />: {why}</li>)}</ul>
       )}
       <Complaint error={look.complaint ?? make.complaint} />
       <div class="row">

@@ -3,7 +3,7 @@
 import {useState} from 'preact/hooks';
 import {asApiError, type ApiError} from '../../api/client';
 import {Button} from '../../ui/button';
-import {Cloth} from '../../ui/cloth_name';
+import {ClothName} from '../../ui/cloth_name';
 import {Complaint} from '../../ui/complaint';
 import {counted, degrees} from '../../ui/say';
 import {Table} from '../../ui/table';
@@ -45,7 +45,7 @@ export function AffectedSessions({sessions, calibration}: AffectedSessionsProps)
           cells: [
             <label class="row">
               <input type="checkbox" checked={chosen.has(each.session)} onChange={() => turn(each.session)} />
-              <a href={`/sessions/${each.session}`}><Cloth session={each.session} /></a>
+              <a href={`/sessions/${each.session}`}><ClothName session={each.session} /></a>
             </label>,
             timeOf(each.time),
             each.afterMove ? 'yes' : 'perhaps',

@@ -8,9 +8,9 @@ import {Complaint} from '../../ui/complaint';
 import {schemaOf, type Wish} from '../../ui/request_schema';
 import {SchemaForm} from '../../ui/schema_form';
 import {known, workOn} from './calibrations';
-import {fromOf, setOf, type Stage, type Walk} from './walk';
+import {fromOf, setOf, type Walk, type WalkStage} from './walk';
 
-type Thing = NonNullable<Stage['thing']>;
+type Thing = NonNullable<WalkStage['thing']>;
 interface Described {
   wish: Wish;
   /** Of a file, in place of the form; empty: none was chosen. */
@@ -21,7 +21,7 @@ const nothing: Described = {wish: {}, text: ''};
 /** What was said last of each thing: the sheet of the lights is that of the proof. */
 const described = new Map<Thing, Described>();
 
-export function Begin({walk, stage}: {walk: Walk; stage: Stage}) {
+export function Begin({walk, stage}: {walk: Walk; stage: WalkStage}) {
   const {thing, part, about} = stage;
   const [said, say] = useState((thing && described.get(thing)) ?? nothing);
   const begin = useAction(async () => {

@@ -11,14 +11,15 @@ import {Mark} from '../../ui/mark';
 import type {Wish} from '../../ui/request_schema';
 import {More} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
-import {errorOf} from '../jobs/price';
 import {cancel, queueJob} from '../jobs/jobs';
+import {errorOf} from '../jobs/price';
+import type {Job} from '../jobs/queue';
 import {known} from './calibrations';
-import {findingsIn, hasResult, notesBeside, jobOf, requestOf, standingOf, type Job, type JobRequest, type Stage, type Walk} from './walk';
+import {findingsIn, hasResult, notesBeside, jobOf, requestOf, standingOf, type JobRequest, type Walk, type WalkStage} from './walk';
 
 interface CalculationProps {
   walk: Walk;
-  stage: Stage;
+  stage: WalkStage;
   /** Whether the photographs suffice; else a person may say so. */
   isEnough: boolean;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import './calibrate.css';
 import {place} from '../../state/address';
-import {Overview} from './overview';
 import {useCalibrations} from './calibrations';
+import {Overview} from './overview';
 import {WalkPage} from './walk_page';
 import type {Walk} from './walk';
 

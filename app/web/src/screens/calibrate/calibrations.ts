@@ -7,15 +7,15 @@ import {onEvent} from '../../api/events';
 import {forms} from '../../state/forms';
 import {withDevicesFree} from '../desk/devices';
 import type {Fields} from '../../ui/fields';
-import {hasEnded} from '../jobs/queue';
 import {jobs, useJobs} from '../jobs/jobs';
-import {historyOf, noHistory, type History} from './history';
+import {hasEnded} from '../jobs/queue';
+import {historyOf, noHistory, type CalibrationHistory} from './history';
 import type {PhotographSet} from './photograph_set';
 import type {Known, Listed, Part} from './walk';
 
 export const calibrations = signal<readonly Listed[]>([]);
 const series = signal<readonly string[]>([]);
-export const history = signal<History>(noHistory);
+export const history = signal<CalibrationHistory>(noHistory);
 /** The set that is worked on; null: none, or not known yet. */
 export const work = signal<PhotographSet | null>(null);
 /** What the doctor says of the calibration. */
@@ -81,7 +81,7 @@ function isOfCalibration(kind: string): boolean {
   return kind === 'check' || kind.startsWith('calibrate_');
 }
 
-export interface Wish {
+export interface SetWish {
   part: Part;
   name: string;
   from: string | null;
@@ -90,7 +90,7 @@ export interface Wish {
 }
 
 /** Begins a set or goes on with it. */
-export async function workOn({part, name, from, thing}: Wish): Promise<void> {
+export async function workOn({part, name, from, thing}: SetWish): Promise<void> {
   const described = thing === null ? {} : typeof thing === 'string' ? {description: thing} : {thing};
   const body = {part, name, ...(from === null ? {} : {from}), ...described};
   work.value = await answer(api.POST('/api/v1/calibrations/work', {body}));

@@ -7,13 +7,13 @@ import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {followFinder, framing, looks, openDevices, picture, trouble, type Framing} from '../desk/devices';
-import {pointsIn, type Point} from './photograph_set';
+import {pointsIn, type XY} from './photograph_set';
 
 interface FinderViewProps {
   /** The pose that is wanted, in shares of the picture. */
-  wanted: readonly Point[] | null;
+  wanted: readonly XY[] | null;
   /** What the last photograph was found to show. */
-  found: readonly Point[] | null;
+  found: readonly XY[] | null;
 }
 
 export function FinderView({wanted, found}: FinderViewProps) {
@@ -64,6 +64,6 @@ function Outlines({wanted, found, seen}: FinderViewProps & {seen: Framing | null
   );
 }
 
-function said(points: readonly Point[]): string {
+function said(points: readonly XY[]): string {
   return points.map(([x, y]) => `${x},${y}`).join(' ');
 }

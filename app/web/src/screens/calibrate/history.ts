@@ -3,7 +3,7 @@
 import {fieldsOf, listIn, numberIn, textIn, textsIn} from '../../ui/fields';
 import type {CheckResult} from './walk';
 
-export interface History {
+export interface CalibrationHistory {
   summary: string;
   calibrations: DatedCalibration[];
   checks: CheckResult[];
@@ -35,9 +35,9 @@ export interface Affected {
   worst_deg: number | null;
 }
 
-export const noHistory: History = {summary: '', calibrations: [], checks: [], affected: [], warnings: []};
+export const noHistory: CalibrationHistory = {summary: '', calibrations: [], checks: [], affected: [], warnings: []};
 
-export function historyOf(document: unknown): History {
+export function historyOf(document: unknown): CalibrationHistory {
   const numbers = fieldsOf(document)['numbers'];
   return {
     summary: textIn(document, 'summary'),
@@ -94,21 +94,21 @@ export interface Series {
   points: Dated[];
 }
 
-export function seriesOfCamera(history: History, measured: 'cameraHeight_mm' | 'cameraTilt_deg'): Series[] {
+export function seriesOfCamera(history: CalibrationHistory, measured: 'cameraHeight_mm' | 'cameraTilt_deg'): Series[] {
   return [{name: '', points: pointsOf(history.calibrations, (each) => each[measured])}];
 }
 
 /** By LED, how far it is from where it was first. */
-export function seriesOfPlaces(history: History): Series[] {
+export function seriesOfPlaces(history: CalibrationHistory): Series[] {
   return seriesOfLeds(history, (led, first) => Math.hypot(...led.position_mm.map((at, axis) => at - (first.position_mm[axis] ?? at))));
 }
 
 /** By LED, its light of its first, percent. */
-export function seriesOfFluxes(history: History): Series[] {
+export function seriesOfFluxes(history: CalibrationHistory): Series[] {
   return seriesOfLeds(history, (led, first) => (led.flux === null || first.flux === null ? null : (100 * led.flux) / first.flux));
 }
 
-function seriesOfLeds({calibrations}: History, valueOf: (led: Led, first: Led) => number | null): Series[] {
+function seriesOfLeds({calibrations}: CalibrationHistory, valueOf: (led: Led, first: Led) => number | null): Series[] {
   const firsts = calibrations.find((each) => each.leds.length > 0)?.leds ?? [];
   return firsts.map((first) => ({
     name: `LED ${first.led}`,

@@ -6,15 +6,15 @@ import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Mark} from '../../ui/mark';
-import {age} from '../../ui/say';
 import type {Wish} from '../../ui/request_schema';
+import {age} from '../../ui/say';
 import {SchemaForm} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
 import {Table} from '../../ui/table';
 import {durationOf} from '../../ui/words';
+import {cancel, jobs, queueJob} from '../jobs/jobs';
 import {errorOf} from '../jobs/price';
 import {hasEnded, type Job} from '../jobs/queue';
-import {cancel, jobs, queueJob} from '../jobs/jobs';
 import {lightPlanOf, signed, type LightPlan, type LightRow} from './light_plan';
 
 export function LightPlanPanel() {

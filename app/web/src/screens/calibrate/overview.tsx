@@ -11,10 +11,10 @@ import {Table} from '../../ui/table';
 import {timeOf} from '../../ui/words';
 import {Acceptance} from './acceptance';
 import {AffectedSessions} from './affected';
+import {calibrations, complaint, findings, history, isKnown, known, work} from './calibrations';
 import {DatedPlot} from './dated_plot';
 import {seriesOfCamera, seriesOfFluxes, seriesOfPlaces} from './history';
 import {LightPlanPanel} from './light_plan_panel';
-import {calibrations, complaint, findings, history, isKnown, known, work} from './calibrations';
 import {currentStage, freeName, walkOfSet, walksIn, type CheckResult, type Listed, type WalkKind} from './walk';
 
 const parts = [

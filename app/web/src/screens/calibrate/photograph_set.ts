@@ -14,11 +14,11 @@ export interface Coverage {
   corners: number[];
   seen: number;
   /** Where its corners were seen less where they are predicted, pixels, row by row; empty: not known yet. */
-  residuals: Point[];
+  residuals: XY[];
 }
 
 /** One figure of how well something is known. */
-export interface Figure {
+export interface CameraFigure {
   key: string;
   name: string;
   unit: string;
@@ -43,13 +43,13 @@ export function coverageOf(set: PhotographSet): Coverage | null {
 }
 
 /** How many pixels an arrow as long as a part of the picture is wide stands for: the longest has half of it. */
-export function arrowScale(residuals: readonly Point[]): number {
+export function arrowScale(residuals: readonly XY[]): number {
   const longest = Math.max(...residuals.map(([x, y]) => Math.hypot(x, y)));
   const decade = 10 ** Math.floor(Math.log10(2 * longest));
   return decade * ([1, 2, 5].find((step) => step * decade >= 2 * longest) ?? 10);
 }
 
-export function figuresOf(set: PhotographSet): Figure[] {
+export function figuresOf(set: PhotographSet): CameraFigure[] {
   const {predicted, asked, then} = fieldsOf(set.figures);
   return figures.flatMap((figure) => {
     const now = numberIn(predicted, figure.key);
@@ -60,11 +60,11 @@ export function figuresOf(set: PhotographSet): Figure[] {
 }
 
 /** How far it is on the way to what is asked, by a logarithm: from ten times as much to it. */
-export function shareOf(figure: Figure): number {
+export function shareOf(figure: CameraFigure): number {
   return Math.max(0, Math.min(1, 1 - Math.log10(figure.now / figure.asked)));
 }
 
-export function isMet(figure: Figure): boolean {
+export function isMet(figure: CameraFigure): boolean {
   return figure.now <= figure.asked;
 }
 
@@ -108,21 +108,21 @@ export function lastUsed(set: PhotographSet): Photograph | null {
   return set.photographs.filter((each) => each.used).at(-1) ?? null;
 }
 
-export type Point = readonly [number, number];
+export type XY = readonly [number, number];
 
 /** The outline of the pose that is wanted, in shares of the picture; null: there is none, or its place is not said. */
-export function outlineWanted(set: PhotographSet): Point[] | null {
+export function outlineWanted(set: PhotographSet): XY[] | null {
   const outline = pointsIn(fieldsOf(set.next?.pose)['outline']);
   return outline.length > 2 ? outline : null;
 }
 
 /** Where the newest photograph has the thing that was looked for; null: it is not said. */
-export function outlineFound(set: PhotographSet): Point[] | null {
+export function outlineFound(set: PhotographSet): XY[] | null {
   const outline = pointsIn(fieldsOf(set.photographs.filter((each) => !each.left_out).at(-1)?.facts)['outline']);
   return outline.length > 2 ? outline : null;
 }
 
-export function pointsIn(list: unknown): Point[] {
+export function pointsIn(list: unknown): XY[] {
   if (!Array.isArray(list)) return [];
   return list.flatMap((each: unknown) => {
     const [x, y] = Array.isArray(each) ? (each as unknown[]) : [];

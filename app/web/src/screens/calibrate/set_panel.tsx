@@ -10,13 +10,13 @@ import {Complaint} from '../../ui/complaint';
 import {Mark} from '../../ui/mark';
 import {digits} from '../../ui/say';
 import {Share} from '../../ui/share';
+import {leaveOut, photograph} from './calibrations';
 import {CoverageMap} from './coverage';
 import {FinderView} from './finder_view';
 import {Answer, Photographs} from './photographs';
 import {
-  coverageOf, figuresOf, isMet, lastUsed, outlineFound, outlineWanted, shareOf, takenBy, type Figure, type PhotographSet,
+  coverageOf, figuresOf, isMet, lastUsed, outlineFound, outlineWanted, shareOf, takenBy, type CameraFigure, type PhotographSet,
 } from './photograph_set';
-import {leaveOut, photograph} from './calibrations';
 
 interface Choice {
   name: string;
@@ -117,7 +117,7 @@ function Progress() {
 }
 
 /** How well the camera is known by now, against what is asked. */
-function Figures({figures}: {figures: readonly Figure[]}) {
+function Figures({figures}: {figures: readonly CameraFigure[]}) {
   return (
     <dl class="figures">
       {figures.map((figure) => (

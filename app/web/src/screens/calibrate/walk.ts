@@ -3,16 +3,16 @@
 // file: sets/NAME-..., calibrations/NAME-...; so any browser goes on with it.
 import type {Schemas} from '../../api/client';
 import {textIn} from '../../ui/fields';
+import type {Job} from '../jobs/queue';
 import type {PhotographSet} from './photograph_set';
 
 export type Listed = Schemas['ListedCalibration'];
-export type Job = Schemas['Job'];
 export type JobRequest = Schemas['JobRequest'];
 export type WalkKind = keyof Walks;
 /** The stages of each walk, as the daemon has them. */
 export type Walks = Schemas['Forms']['walks'];
-export type Stage = Schemas['WalkStage'];
-export type Part = Stage['part'];
+export type WalkStage = Schemas['WalkStage'];
+export type Part = WalkStage['part'];
 
 export interface Walk {
   kind: WalkKind;
@@ -39,25 +39,25 @@ export interface CheckResult {
 
 export type Standing = 'open' | 'working' | 'failed' | 'done' | 'found';
 
-export function stagesOf(walk: Walk, {walks}: Known): readonly Stage[] {
+export function stagesOf(walk: Walk, {walks}: Known): readonly WalkStage[] {
   return walks[walk.kind];
 }
 
-export function setOf(walk: Walk, stage: Stage): string {
+export function setOf(walk: Walk, stage: WalkStage): string {
   return `${walk.name}-${stage.part}`;
 }
 
-export function folderOf(walk: Walk, stage: Stage): string {
+export function folderOf(walk: Walk, stage: WalkStage): string {
   return `calibrations/${walk.name}-${stage.result}`;
 }
 
 /** The newest job that is to write a stage's folder; null: there was none. */
-export function jobOf(walk: Walk, stage: Stage, known: Known): Job | null {
+export function jobOf(walk: Walk, stage: WalkStage, known: Known): Job | null {
   const folder = folderOf(walk, stage);
   return known.jobs.find((job) => job.kind === stage.job && textIn(job.wants, 'output') === folder) ?? null;
 }
 
-export function standingOf(walk: Walk, stage: Stage, known: Known): Standing {
+export function standingOf(walk: Walk, stage: WalkStage, known: Known): Standing {
   if (stage.is_aside) return known.series.includes(setOf(walk, stage)) ? 'done' : 'open';
   const folder = folderOf(walk, stage);
   const check = known.checks.find((each) => each.folder === folder);
@@ -83,7 +83,7 @@ export function hasResult(standing: Standing): boolean {
 }
 
 /** The stage that a person is at; null: all of them have a result. */
-export function currentStage(walk: Walk, known: Known): Stage | null {
+export function currentStage(walk: Walk, known: Known): WalkStage | null {
   const all = stagesOf(walk, known);
   const last = all.filter((stage) => hasResult(standingOf(walk, stage, known))).at(-1);
   const after = all.slice(last === undefined ? 0 : all.indexOf(last) + 1);
@@ -97,7 +97,7 @@ export function isUnharmed(walk: Walk, known: Known): boolean {
 }
 
 /** The calibration that a stage begins with: the last one of the walk before it, else the rig's. */
-export function fromOf(walk: Walk, stage: Stage, known: Known): string | null {
+export function fromOf(walk: Walk, stage: WalkStage, known: Known): string | null {
   const all = stagesOf(walk, known);
   const before = all.slice(0, all.indexOf(stage));
   const made = before.map((each) => folderOf(walk, each)).filter((folder) => isListed(folder, known));
@@ -115,7 +115,7 @@ function isListed(folder: string, known: Known): boolean {
 }
 
 /** Each kind of job takes those of them that the stages of its part have. */
-function inputsOf(walk: Walk, stage: Stage, known: Known) {
+function inputsOf(walk: Walk, stage: WalkStage, known: Known) {
   const set = `sets/${setOf(walk, stage)}`;
   const from = fromOf(walk, stage, known);
   return {
@@ -126,7 +126,7 @@ function inputsOf(walk: Walk, stage: Stage, known: Known) {
   };
 }
 
-export function requestOf(walk: Walk, stage: Stage, known: Known): JobRequest {
+export function requestOf(walk: Walk, stage: WalkStage, known: Known): JobRequest {
   return {...inputsOf(walk, stage, known), output: folderOf(walk, stage)} as JobRequest;
 }
 
@@ -134,7 +134,7 @@ export function requestOf(walk: Walk, stage: Stage, known: Known): JobRequest {
  * What the sheets by now would give of the lights, while more are wanted: a job that writes nothing. The same sheets are
  * the same job, whoever looks. Null: there is nothing to be told.
  */
-export function trialOf(walk: Walk, stage: Stage, set: PhotographSet, known: Known): JobRequest | null {
+export function trialOf(walk: Walk, stage: WalkStage, set: PhotographSet, known: Known): JobRequest | null {
   const used = set.photographs.filter((photograph) => photograph.used).map(({name}) => name);
   if (stage.part !== 'sheet' || set.next === null || used.length === 0) return null;
   return {...inputsOf(walk, stage, known), request_id: [setOf(walk, stage), ...used].join('.')} as JobRequest;
@@ -181,16 +181,16 @@ export function freeName(day: string, walks: readonly Walk[]): string {
 }
 
 /** What a step of weft calibrate says of its result: what is wrong or weak, each with a remedy. */
-export interface Finding {
+export interface WalkFinding {
   text: string;
   remedy: string;
 }
 
 /** What it said beside its findings, which it says on their own, too. */
-export function notesBeside(notes: readonly string[], findings: readonly Finding[]): string[] {
+export function notesBeside(notes: readonly string[], findings: readonly WalkFinding[]): string[] {
   return notes.filter((note) => findings.every(({text}) => !note.startsWith(text)));
 }
 
-export function findingsIn(verdicts: readonly unknown[]): Finding[] {
+export function findingsIn(verdicts: readonly unknown[]): WalkFinding[] {
   return verdicts.map((each) => ({text: textIn(each, 'text'), remedy: textIn(each, 'remedy')}));
 }

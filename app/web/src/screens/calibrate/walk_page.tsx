@@ -7,16 +7,16 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {textIn} from '../../ui/fields';
 import {Mark, type Verdict} from '../../ui/mark';
+import {jobs, queueJob} from '../jobs/jobs';
 import {errorOf} from '../jobs/price';
 import {stateOf} from '../jobs/queue';
-import {jobs, queueJob} from '../jobs/jobs';
 import {Acceptance} from './acceptance';
 import {Begin} from './begin';
 import {Calculation} from './calculation';
-import {SetPanel} from './set_panel';
 import {complaint, isKnown, known, work} from './calibrations';
+import {SetPanel} from './set_panel';
 import {
-  currentStage, hasResult, isUnharmed, madeBy, setOf, stagesOf, standingOf, trialOf, type JobRequest, type Stage, type Standing, type Walk,
+  currentStage, hasResult, isUnharmed, madeBy, setOf, stagesOf, standingOf, trialOf, type JobRequest, type Standing, type Walk, type WalkStage,
 } from './walk';
 
 const marks: Record<Standing, {verdict: Verdict; says: string}> = {
@@ -55,7 +55,7 @@ export function WalkPage({walk}: {walk: Walk}) {
   );
 }
 
-function StageItem({walk, stage, isShown}: {walk: Walk; stage: Stage; isShown: boolean}) {
+function StageItem({walk, stage, isShown}: {walk: Walk; stage: WalkStage; isShown: boolean}) {
   const {verdict, says} = marks[standingOf(walk, stage, known.value)];
   return (
     <li aria-current={isShown ? 'step' : undefined}>
@@ -69,7 +69,7 @@ function StageItem({walk, stage, isShown}: {walk: Walk; stage: Stage; isShown: b
 }
 
 /** Photographs first, then what is calculated of them. */
-function StagePanel({walk, stage}: {walk: Walk; stage: Stage}) {
+function StagePanel({walk, stage}: {walk: Walk; stage: WalkStage}) {
   const set = work.value?.name === setOf(walk, stage) ? work.value : null;
   const standing = standingOf(walk, stage, known.value);
   const isOver = hasResult(standing);

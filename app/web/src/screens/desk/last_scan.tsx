@@ -5,14 +5,16 @@ import {rig} from '../../state/rig';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
-import {useLatest} from '../../ui/use_latest';
 import {Mark} from '../../ui/mark';
 import {digits} from '../../ui/say';
+import {useLatest} from '../../ui/use_latest';
 import {percentOf} from '../../ui/words';
-import {Price} from '../jobs/price';
 import {useJobs} from '../jobs/jobs';
+import {Price} from '../jobs/price';
 import {exposedOf, lessThan, type Exposed} from './clipping';
-import {followSolve, relitPicture, shootAgain, type Frame, type Session} from './scan';
+import {followSolve, relitPicture, shootAgain, type Session} from './scan';
+
+type Frame = Session['frames'][number];
 
 function titleOf({role, led}: Frame): string {
   const lit = `LED ${led}`;

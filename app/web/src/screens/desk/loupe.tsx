@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A photograph comes in disjoint squares: which of them a loupe shows, and where.
 import type {Schemas} from '../../api/client';
+import type {Point} from '../../gl/view';
 
 export const tile = 512;
-
-export interface Point {
-  x: number;
-  y: number;
-}
 
 export interface PlacedTile {
   name: string;

@@ -9,7 +9,6 @@ import {holdOf} from './hold';
 import {scanRequest} from './proposal';
 
 export type Session = Schemas['Session'];
-export type Frame = Schemas['Frame'];
 
 /** What this desk scanned last: shown until the next cloth. */
 export const scanned = signal<Session | null>(null);

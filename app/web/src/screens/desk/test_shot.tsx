@@ -2,6 +2,7 @@
 // A photograph that nobody keeps: how it is exposed, and how sharp it is among those before it.
 import {useState} from 'preact/hooks';
 import type {Schemas} from '../../api/client';
+import type {Point} from '../../gl/view';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Mark} from '../../ui/mark';
@@ -10,7 +11,7 @@ import {exposedOf} from './clipping';
 import {say} from './cloth';
 import {shots} from './devices';
 import {exposureInWords, millisecondsOf} from './exposure';
-import {Loupe, type Point} from './loupe';
+import {Loupe} from './loupe';
 
 type TestShot = Schemas['TestShot'];
 type Focus = NonNullable<TestShot['focus']>;

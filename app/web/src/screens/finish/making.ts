@@ -2,8 +2,8 @@
 // Maps on their way: a preview a little after each change of the recipe, and all of them when they are asked for.
 import {useEffect, useState} from 'preact/hooks';
 import {type ApiError, asApiError, type Schemas} from '../../api/client';
-import {hasEnded, type Job} from '../jobs/queue';
 import {cancel, jobs, putFirst, queueJob} from '../jobs/jobs';
+import {hasEnded, type Job} from '../jobs/queue';
 import type {Recipe} from './recipe';
 
 const pause_ms = 400;

@@ -57,33 +57,33 @@ export function keysOfBox(step: string, box: Box, mm_per_pixel: number, spots: r
 }
 
 /** A recipe with what it was before and what was taken back, the nearest last. */
-export interface History {
+export interface RecipeHistory {
   past: readonly Recipe[];
   now: Recipe;
   future: readonly Recipe[];
 }
 
-export const nothing: History = {past: [], now: [], future: []};
+export const nothing: RecipeHistory = {past: [], now: [], future: []};
 const mostSteps = 200;
 
-export function changed({past, now}: History, to: Recipe): History {
+export function changed({past, now}: RecipeHistory, to: Recipe): RecipeHistory {
   return {past: [...past, now].slice(-mostSteps), now: to, future: []};
 }
 
-export function undone(history: History): History {
+export function undone(history: RecipeHistory): RecipeHistory {
   const before = history.past.at(-1);
   if (!before) return history;
   return {past: history.past.slice(0, -1), now: before, future: [...history.future, history.now]};
 }
 
-export function redone(history: History): History {
+export function redone(history: RecipeHistory): RecipeHistory {
   const after = history.future.at(-1);
   if (!after) return history;
   return {past: [...history.past, history.now], now: after, future: history.future.slice(0, -1)};
 }
 
 /** What was kept of a history; null where it cannot be read. */
-export function historyIn(text: string | null): History | null {
+export function historyIn(text: string | null): RecipeHistory | null {
   const kept = parsed(text ?? '');
   if (!isFields(kept)) return null;
   const isRecipe = (value: unknown): value is Recipe => Array.isArray(value) && value.every(isStep);
@@ -105,7 +105,7 @@ function parsed(text: string): unknown {
  * whatever ends the daemon. Another browser begins with the steps of a set of maps.
  */
 export class Draft {
-  readonly history: Signal<History>;
+  readonly history: Signal<RecipeHistory>;
   private readonly key: string;
 
   constructor(session: string, first: Recipe) {
@@ -125,7 +125,7 @@ export class Draft {
     this.take(redone(this.history.value));
   }
 
-  private take(history: History): void {
+  private take(history: RecipeHistory): void {
     this.history.value = history;
     localStorage.setItem(this.key, JSON.stringify(history));
   }

@@ -2,16 +2,16 @@
 import {useState} from 'preact/hooks';
 import {asApiError, type ApiError} from '../../api/client';
 import {titleOf} from '../../state/forms';
-import {Cloth} from '../../ui/cloth_name';
+import {ClothName} from '../../ui/cloth_name';
 import {textIn} from '../../ui/fields';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Mark, type Verdict} from '../../ui/mark';
 import {Share} from '../../ui/share';
 import {durationOf, timeOf} from '../../ui/words';
+import {cancel, forget, putFirst, retry} from './jobs';
 import {errorOf} from './price';
 import {hasEnded, stateOf, wishOf, type Job} from './queue';
-import {cancel, forget, putFirst, retry} from './jobs';
 
 interface JobRowProps {
   job: Job;
@@ -58,7 +58,7 @@ function Subject({job}: {job: Job}) {
   if (job.of.includes('/')) return <span>{job.of}</span>;
   return (
     <>
-      <a href={`/sessions/${job.of}`}><Cloth session={job.of} /></a>
+      <a href={`/sessions/${job.of}`}><ClothName session={job.of} /></a>
       {isOfMaps && <> <a href={`/viewer/${job.of}/maps/${textIn(job.result, 'id')}`}>Look at them</a></>}
       {solve && <> <a href={`/viewer/${job.of}/${solve}`}>Look at it</a></>}
       {job.kind === 'price' && job.state === 'done' && <> <a href={`/jobs?price=${job.of}`}>Levels</a></>}

@@ -6,10 +6,10 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
 import {JobRow} from './job_row';
+import {askOlder, complaint, jobs, olderThan, queue, useJobs} from './jobs';
 import {Log} from './log';
 import {Price} from './price';
 import type {Job} from './queue';
-import {askOlder, complaint, jobs, olderThan, queue, useJobs} from './jobs';
 
 /** What the daemon works at, what waits and what was done; and what each level would cost for a session. */
 export default function JobsScreen() {

@@ -5,8 +5,8 @@ import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import {Dialog} from '../../ui/dialog';
 import {titleOf} from '../../state/forms';
-import type {Job} from './queue';
 import {logOf} from './jobs';
+import type {Job} from './queue';
 
 /** What the verb of a job said. */
 export function Log({job, onClose}: {job: Job; onClose: () => void}) {

@@ -6,20 +6,20 @@ import {asApiError, type ApiError, type Schemas} from '../../api/client';
 import {clothOf} from '../../state/cloths';
 import {formOf, type Quality} from '../../state/forms';
 import {Button} from '../../ui/button';
-import {Cloth} from '../../ui/cloth_name';
+import {ClothName} from '../../ui/cloth_name';
 import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
-import {degrees, degreesOn} from '../../ui/say';
 import type {Wish} from '../../ui/request_schema';
+import {degrees, degreesOn} from '../../ui/say';
 import {More} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
 import {Table} from '../../ui/table';
 import {durationOf} from '../../ui/words';
 import {Crops} from './crops';
+import {jobs, queueJob} from './jobs';
 import {drawable, levelsIn, worthwhile, type Level} from './ladder';
 import {LadderPlot} from './ladder_plot';
 import {hasEnded, type Job} from './queue';
-import {jobs, queueJob} from './jobs';
 
 /** What a level that was priced says. */
 const saidHere = ['session', 'quality', 'method', 'within_s', 'to_deg'];
@@ -40,7 +40,7 @@ export function Price({session}: {session: string}) {
   return (
     <section class="panel price" aria-labelledby="price-title">
       <div class="row">
-        <h2 id="price-title">Accuracy against time of <a href={`/sessions/${session}`}><Cloth session={session} /></a></h2>
+        <h2 id="price-title">Accuracy against time of <a href={`/sessions/${session}`}><ClothName session={session} /></a></h2>
         {levels.length > 0 && <Button kind="quiet" onClick={price}>Measure again</Button>}
       </div>
       <Complaint error={complaint} />

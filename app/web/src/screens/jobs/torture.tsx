@@ -7,9 +7,9 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {textIn} from '../../ui/fields';
 import {addressOfViewer, FIRST_SIGHT} from '../viewer/sight';
+import {jobs, queueJob, useJobs} from './jobs';
 import {errorOf} from './price';
 import {hasEnded} from './queue';
-import {jobs, queueJob, useJobs} from './jobs';
 
 export function TortureScene() {
   useJobs();

@@ -9,9 +9,9 @@ import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
-import {hasEnded} from '../jobs/queue';
-import {jobs, queueJob, useJobs} from '../jobs/jobs';
 import {useLatest} from '../../ui/use_latest';
+import {jobs, queueJob, useJobs} from '../jobs/jobs';
+import {hasEnded} from '../jobs/queue';
 import {JobLine} from './job_line';
 import {placeOfMaterial} from './material_sight';
 

@@ -8,14 +8,14 @@ import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
-import {useLatest} from '../../ui/use_latest';
 import {Mark} from '../../ui/mark';
 import type {Wish} from '../../ui/request_schema';
 import {More} from '../../ui/schema_form';
+import {useLatest} from '../../ui/use_latest';
 import {bytesOf} from '../../ui/words';
-import {hasEnded} from '../jobs/queue';
 import {jobs, queueJob, useJobs} from '../jobs/jobs';
-import {addressOfExports, addressOfFile, type ExportFile, filesOf, type Price, priceInWords, pricesOf, requestOf} from './exports';
+import {hasEnded} from '../jobs/queue';
+import {addressOfExports, addressOfFile, type ExportFile, type ExportPrice, filesOf, priceInWords, pricesOf, requestOf} from './exports';
 import {JobLine} from './job_line';
 import type {MaterialName} from './material_sight';
 
@@ -75,7 +75,7 @@ export function ExportPanel({name, isDraft}: {name: MaterialName; isDraft: boole
 interface PresetProps {
   preset: Schemas['Preset'];
   isChosen: boolean;
-  price: Price | undefined;
+  price: ExportPrice | undefined;
   onToggle: () => void;
 }
 

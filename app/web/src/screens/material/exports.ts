@@ -36,15 +36,15 @@ export function filesOf(document: unknown): ExportFile[] {
   return [...listIn(document, 'files'), ...listIn(document, 'documents')].map(fileOf);
 }
 
-export interface Price {
+export interface ExportPrice {
   bytes: number;
   seconds: number;
   files: ExportFile[];
 }
 
 /** By preset, what `weft export --explain` said of it; '' stands for what normals and albedo cost in every format. */
-export function pricesOf(result: unknown): Map<string, Price> {
-  const prices = new Map<string, Price>();
+export function pricesOf(result: unknown): Map<string, ExportPrice> {
+  const prices = new Map<string, ExportPrice>();
   for (const row of listIn(result, 'rows')) {
     const preset = textIn(row, 'preset');
     const price = prices.get(preset) ?? {bytes: 0, seconds: 0, files: []};
@@ -57,7 +57,7 @@ export function pricesOf(result: unknown): Map<string, Price> {
   return prices;
 }
 
-export function priceInWords({bytes, seconds}: Price): string {
+export function priceInWords({bytes, seconds}: ExportPrice): string {
   return `${bytesOf(bytes)}, ${digits(seconds, 2)} s`;
 }
 

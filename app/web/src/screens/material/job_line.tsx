@@ -4,9 +4,9 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Mark} from '../../ui/mark';
 import {Share} from '../../ui/share';
+import {cancel} from '../jobs/jobs';
 import {errorOf} from '../jobs/price';
 import {hasEnded, type Job} from '../jobs/queue';
-import {cancel} from '../jobs/jobs';
 
 /** How a job is, with a way to end it; what went wrong of one that failed. */
 export function JobLine({job}: {job: Job}) {

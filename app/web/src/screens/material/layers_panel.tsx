@@ -10,12 +10,12 @@ import {Field} from '../../ui/field';
 import {Mark} from '../../ui/mark';
 import {Table} from '../../ui/table';
 import {percentOf} from '../../ui/words';
-import {hasEnded} from '../jobs/queue';
 import {jobs, queueJob, useJobs} from '../jobs/jobs';
+import {hasEnded} from '../jobs/queue';
 import {JobLine} from './job_line';
 import {placeOfMaterial} from './material_sight';
 import {Slider} from './slider';
-import {builtBy, fileName, movedBy, ownValues, requestOf, stackOf, type StackLayer, type Value, valueInWords, type Wish, wishesOf} from './stack';
+import {builtBy, fileName, type LayerWish, type MaterialValue, movedBy, ownValues, requestOf, stackOf, type StackLayer, valueInWords, wishesOf} from './stack';
 
 /** `built`: the id of the build that is looked at; empty: none. */
 export function LayersPanel({material, built}: {material: string; built: string}) {
@@ -55,7 +55,7 @@ function Stack({material, stack}: {material: string; stack: StackLayer[]}) {
       <ol class="stack" aria-label="Layers, the top one first">
         {wishes.map((wish, index) => {
           const layer = stack.find((each) => each.name === wish.name);
-          const change = (to: Partial<Wish>) => setWishes(wishes.map((each) => (each === wish ? {...each, ...to} : each)));
+          const change = (to: Partial<LayerWish>) => setWishes(wishes.map((each) => (each === wish ? {...each, ...to} : each)));
           return layer && (
             <Layer key={wish.name} layer={layer} wish={wish} onChange={change}
               onMove={wishes.length > 1 ? (by) => setWishes(movedBy(wishes, index, by)) : null} />
@@ -76,8 +76,8 @@ function Stack({material, stack}: {material: string; stack: StackLayer[]}) {
 
 interface LayerProps {
   layer: StackLayer;
-  wish: Wish;
-  onChange: (to: Partial<Wish>) => void;
+  wish: LayerWish;
+  onChange: (to: Partial<LayerWish>) => void;
   onMove: ((by: -1 | 1) => void) | null;
 }
 
@@ -102,7 +102,7 @@ function Layer({layer: {name, material, mask, blend, from, values}, wish: {alpha
   );
 }
 
-function Values({caption, values}: {caption: string; values: readonly Value[]}) {
+function Values({caption, values}: {caption: string; values: readonly MaterialValue[]}) {
   return (
     <details>
       <summary>{caption}</summary>

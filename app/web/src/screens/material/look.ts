@@ -6,17 +6,17 @@ import type {ClothLook, ClothMaps} from '../../gl/cloth_surface';
 import type {Size} from '../../gl/view';
 import {amend, place} from '../../state/address';
 import {fieldsOf} from '../../ui/fields';
+import {addressOfMaterial, type MaterialName, type MaterialSight, queryOf, sightOf} from './material_sight';
 import {layersOf, parametersOf, shadedBy} from './parameters';
 import {pxPerMm} from './screen_scale';
-import {type Cloth, laidOut} from './shape';
-import {addressOfMaterial, type MaterialName, queryOf, type Sight, sightOf} from './material_sight';
+import {type ClothExtent, laidOut} from './shape';
 
 const WRITE_MS = 250;
 
 export class Look {
   readonly viewed = signal<Schemas['ViewedSolve'] | null>(null);
   readonly complaint = signal<ApiError | null>(null);
-  readonly sight = signal<Sight>(sightOf(place.peek().query));
+  readonly sight = signal<MaterialSight>(sightOf(place.peek().query));
   /** Pixels of the page. */
   readonly canvas = signal<Size>({width: 0, height: 0});
   /** A hand moves the light: half the resolution will do. */
@@ -26,7 +26,7 @@ export class Look {
   readonly document = computed(() => this.viewed.value?.set);
   readonly parameters = computed(() => parametersOf(this.document.value, this.viewed.value?.layers));
 
-  readonly cloth = computed<Cloth | null>(() => {
+  readonly cloth = computed<ClothExtent | null>(() => {
     const viewed = this.viewed.value;
     if (!viewed) return null;
     const mm = viewed.mm_per_pixel ?? 1;
@@ -56,7 +56,7 @@ export class Look {
     );
   }
 
-  see(changes: Partial<Sight>): void {
+  see(changes: Partial<MaterialSight>): void {
     this.sight.value = {...this.sight.peek(), ...changes};
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => amend(queryOf(this.sight.peek())), WRITE_MS);

@@ -5,10 +5,10 @@ import {Button} from '../../ui/button';
 import {Mark} from '../../ui/mark';
 import {lengthInWords} from '../viewer/bars';
 import type {Look} from './look';
+import {BALLS_MM, MOST_LEAN_DEG, REPEATS, type Shape} from './material_sight';
 import type {Parameter} from './parameters';
 import {BROWSER_PX_PER_MM, CARD_MM, keep, measured, pxPerMm} from './screen_scale';
 import {Slider} from './slider';
-import {BALLS_MM, MOST_LEAN_DEG, REPEATS, type Shape} from './material_sight';
 
 const shapes: readonly {shape: Shape; says: string; key: string}[] = [
   {shape: 'ball', says: 'Ball', key: 'b'},

@@ -13,7 +13,7 @@ import {ExportPanel} from './export_panel';
 import {LayersPanel} from './layers_panel';
 import {Look} from './look';
 import {LookPanel} from './look_panel';
-import {type MaterialName, nameOf, type Panel, PANELS, placeOfMaterial} from './material_sight';
+import {MATERIAL_PANELS, type MaterialName, type MaterialPanel, nameOf, placeOfMaterial} from './material_sight';
 import {Stage} from './stage';
 import {titleOf} from './title';
 
@@ -26,13 +26,13 @@ export default function MaterialScreen() {
   return is === 'builds' ? <Unbuilt key={of} material={of} /> : <CurrentMaps key={of} session={of} />;
 }
 
-const panelNames: Record<Panel, string> = {look: 'Look', layers: 'Layers', export: 'Export'};
+const panelNames: Record<MaterialPanel, string> = {look: 'Look', layers: 'Layers', export: 'Export'};
 
 function Viewing({name}: {name: MaterialName}) {
   const look = useMemo(() => new Look(name), []);
   useEffect(() => () => look.close(), [look]);
   const {panel} = look.sight.value;
-  const options = PANELS.filter((each) => each !== 'layers' || name.is === 'builds').map((value) => ({value, says: panelNames[value]}));
+  const options = MATERIAL_PANELS.filter((each) => each !== 'layers' || name.is === 'builds').map((value) => ({value, says: panelNames[value]}));
   return (
     <div class="material">
       <Stage look={look} />

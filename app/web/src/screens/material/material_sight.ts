@@ -12,12 +12,12 @@ export interface MaterialName {
 
 export const SHAPES = ['ball', 'plane', 'true'] as const;
 export type Shape = (typeof SHAPES)[number];
-export const PANELS = ['look', 'layers', 'export'] as const;
-export type Panel = (typeof PANELS)[number];
+export const MATERIAL_PANELS = ['look', 'layers', 'export'] as const;
+export type MaterialPanel = (typeof MATERIAL_PANELS)[number];
 export const REPEATS = [1, 2, 3] as const;
 export const BALLS_MM = [20, 50, 150] as const;
 
-export interface Sight {
+export interface MaterialSight {
   shape: Shape;
   /** Of the plane, pieces a side. */
   repeat: (typeof REPEATS)[number];
@@ -30,10 +30,10 @@ export interface Sight {
   surroundings: number;
   /** In place of what is assumed. */
   typed: Numbers;
-  panel: Panel;
+  panel: MaterialPanel;
 }
 
-export const FIRST: Sight = {
+export const FIRST: MaterialSight = {
   shape: 'ball', repeat: 1, ball_mm: 50, lean_deg: 0, light: [-0.5, 0.5, Math.SQRT1_2], exposure: 0, surroundings: 0.2, typed: {}, panel: 'look',
 };
 export const MOST_LEAN_DEG = 75;
@@ -50,7 +50,7 @@ export function addressOfMaterial({of, is, id}: MaterialName): string {
 }
 
 /** Where it is looked at. */
-export function placeOfMaterial({of, is, id}: MaterialName, panel: Panel = FIRST.panel): string {
+export function placeOfMaterial({of, is, id}: MaterialName, panel: MaterialPanel = FIRST.panel): string {
   return `/material/${[of, is, id].map(encodeURIComponent).join('/')}${panel === FIRST.panel ? '' : `?panel=${panel}`}`;
 }
 
@@ -67,7 +67,7 @@ function lightIn(text: string | null): Vector | null {
 }
 
 /** What a query says; what it does not say, or says wrongly, is as at first. */
-export function sightOf(query: URLSearchParams): Sight {
+export function sightOf(query: URLSearchParams): MaterialSight {
   const typed: Record<string, number> = {};
   for (const name of TYPED) {
     const number = numberIn(query, name, 0, 1);
@@ -82,7 +82,7 @@ export function sightOf(query: URLSearchParams): Sight {
     exposure: numberIn(query, 'exposure', -4, 6) ?? FIRST.exposure,
     surroundings: numberIn(query, 'surroundings', 0, 1) ?? FIRST.surroundings,
     typed,
-    panel: PANELS.find((panel) => panel === query.get('panel')) ?? FIRST.panel,
+    panel: MATERIAL_PANELS.find((panel) => panel === query.get('panel')) ?? FIRST.panel,
   };
 }
 
@@ -91,7 +91,7 @@ function written(numbers: readonly number[]): string {
 }
 
 /** The words of the query. Null: not needed. */
-export function queryOf(sight: Sight): Record<string, string | null> {
+export function queryOf(sight: MaterialSight): Record<string, string | null> {
   const {ball_mm, lean_deg, light, exposure, surroundings, typed} = sight;
   const words: Record<string, [string, string]> = {
     shape: [sight.shape, FIRST.shape],

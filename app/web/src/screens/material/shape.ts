@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // How large a cloth is on the canvas: one truth of millimetres, whatever it is laid on.
 import type {Size} from '../../gl/view';
-import type {Sight} from './material_sight';
+import type {MaterialSight} from './material_sight';
 
-export interface Cloth {
+export interface ClothExtent {
   /** Of one piece. */
   size_mm: [number, number];
   /** False: nobody knows its millimetres, and `size_mm` tells its proportions alone. */
@@ -26,7 +26,7 @@ const MARGIN = 0.94;
  * `canvas` in pixels of the page, `screen` the millimetres' pixels there. One piece that does not repeat is laid on the
  * ball whose half it covers: laid from the middle outwards, lengths towards the edge stay true.
  */
-export function laidOut(cloth: Cloth, sight: Sight, canvas: Size, screen_px_per_mm: number): Laid {
+export function laidOut(cloth: ClothExtent, sight: MaterialSight, canvas: Size, screen_px_per_mm: number): Laid {
   const [width, height] = cloth.size_mm;
   if (sight.shape === 'true' && cloth.is_known) return {px_per_mm: screen_px_per_mm, cells: cloth.repeats ? null : 1, radius_mm: 0, slant_deg: 0};
   if (sight.shape === 'plane') {

@@ -4,7 +4,7 @@ import type {Schemas} from '../../api/client';
 import {isFields, listIn, textIn} from '../../ui/fields';
 
 type Resolved = Schemas['ResolvedMaterial'];
-export type Value = Schemas['MaterialValue'];
+export type MaterialValue = Schemas['MaterialValue'];
 
 export interface StackLayer {
   name: string;
@@ -15,7 +15,7 @@ export interface StackLayer {
   blend: string;
   /** The files that say something of it, the last part of their names. */
   from: string[];
-  values: Value[];
+  values: MaterialValue[];
 }
 
 /** A number, a word, or what a mask or map is made of: "cavity, radius 0.4 mm". */
@@ -62,19 +62,19 @@ export function stackOf(resolved: Pick<Resolved, 'layers' | 'values'>): StackLay
 }
 
 /** A layer as it is wished. */
-export interface Wish {
+export interface LayerWish {
   name: string;
   alpha: number;
   isOn: boolean;
 }
 
 /** Top first. */
-export function wishesOf(stack: readonly StackLayer[]): Wish[] {
+export function wishesOf(stack: readonly StackLayer[]): LayerWish[] {
   return stack.map(({name, alpha}) => ({name, alpha, isOn: alpha > 0}));
 }
 
 /** With the layer at `index` one place higher (-1) or lower (1). */
-export function movedBy(wishes: readonly Wish[], index: number, by: -1 | 1): Wish[] {
+export function movedBy(wishes: readonly LayerWish[], index: number, by: -1 | 1): LayerWish[] {
   const moved = [...wishes];
   const [layer] = moved.splice(index, 1);
   if (layer) moved.splice(Math.min(Math.max(index + by, 0), moved.length), 0, layer);
@@ -82,7 +82,7 @@ export function movedBy(wishes: readonly Wish[], index: number, by: -1 | 1): Wis
 }
 
 /** What is asked of the daemon: from the bottom to the top, with the alphas that changed. A layer that is off has none. */
-export function requestOf(name: string, inherits: string, wishes: readonly Wish[], stack: readonly StackLayer[]): Schemas['NewMaterial'] {
+export function requestOf(name: string, inherits: string, wishes: readonly LayerWish[], stack: readonly StackLayer[]): Schemas['NewMaterial'] {
   const layers = [...wishes].reverse().map((wish) => {
     const alpha = wish.isOn ? wish.alpha : 0;
     const before = stack.find((layer) => layer.name === wish.name)?.alpha;
@@ -92,7 +92,7 @@ export function requestOf(name: string, inherits: string, wishes: readonly Wish[
 }
 
 /** What is not of a layer: the material's own values. */
-export function ownValues({values}: Pick<Resolved, 'values'>): Value[] {
+export function ownValues({values}: Pick<Resolved, 'values'>): MaterialValue[] {
   return values.filter(({key}) => !key.startsWith('layer.'));
 }
 

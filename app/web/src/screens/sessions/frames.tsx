@@ -6,7 +6,7 @@ import {Mark} from '../../ui/mark';
 import {shutter} from '../../ui/say';
 import {percentOf} from '../../ui/words';
 import {change} from './edits';
-import {clippedShare, clippingVerdict, leftOut, standing, type Frame} from './one_session';
+import {clippedShare, clippingVerdict, leftOut, standing, type SessionFrame} from './one_session';
 
 interface FramesProps {
   session: Schemas['Session'];
@@ -52,13 +52,13 @@ function LeaveOut({isOut, of, onTurn}: {isOut: boolean; of: string; onTurn: (out
   );
 }
 
-function titleOf({led, role, polariser}: Frame): string {
+function titleOf({led, role, polariser}: SessionFrame): string {
   const light = led > 0 ? `LED ${led}` : 'No light';
   const how = role === 'lit' || role === 'dark' ? '' : `, ${role}`;
   return polariser === 'none' ? light + how : `${light}${how}, ${polariser}`;
 }
 
-function Clipping({frame}: {frame: Frame}) {
+function Clipping({frame}: {frame: SessionFrame}) {
   const share = clippedShare(frame);
   if (share === null) return <span class="dim">being counted</span>;
   const words = {fine: 'in range', warning: 'near full', fault: 'over'};

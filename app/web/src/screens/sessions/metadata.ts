@@ -10,7 +10,7 @@ const texts = ['fabric', 'id', 'composition', 'construction', 'side', 'notes'] a
 const numbers = ['weight_g_m2', 'thickness_mm'] as const;
 
 export type FormField = (typeof texts)[number] | (typeof numbers)[number];
-export type Form = Record<FormField, string> & {tags: string[]};
+export type MetadataTexts = Record<FormField, string> & {tags: string[]};
 
 export const fields: {field: FormField; label: string; unit?: string}[] = [
   {field: 'fabric', label: 'Fabric'},
@@ -43,7 +43,7 @@ export function saidOf({fabric, said}: Schemas['Session']): Said | null {
   };
 }
 
-export function formOf(session: Said): Form {
+export function formOf(session: Said): MetadataTexts {
   const number = (value: number | null) => (value === null ? '' : String(value));
   return {
     fabric: session.fabric,
@@ -59,7 +59,7 @@ export function formOf(session: Said): Form {
 }
 
 /** The fields that differ, null where one was emptied; a field that is no number stays as it was. */
-export function changeBetween(before: Form, after: Form): MetadataChange {
+export function changeBetween(before: MetadataTexts, after: MetadataTexts): MetadataChange {
   const change: MetadataChange = {};
   for (const field of texts) {
     if (after[field] !== before[field]) change[field] = after[field] === '' ? null : after[field];

@@ -3,7 +3,7 @@
 import {answer, api, type Schemas} from '../../api/client';
 import {saidOf, type Said} from './metadata';
 
-export type Frame = Schemas['Frame'];
+export type SessionFrame = Schemas['Frame'];
 
 export interface OneSession {
   session: Schemas['Session'];
@@ -24,7 +24,7 @@ export async function askSession(name: string): Promise<OneSession> {
 }
 
 /** The share of the channel that has the most photosites at or above white; null: not counted yet. */
-export function clippedShare(frame: Frame): number | null {
+export function clippedShare(frame: SessionFrame): number | null {
   if (!frame.histogram) return null;
   const {red, green, blue} = frame.histogram;
   return Math.max(red.clipped, green.clipped, blue.clipped);
@@ -42,6 +42,6 @@ export function leftOut(shots: readonly number[], index: number, out: boolean): 
 }
 
 /** The frames that stand: one that was taken again is left to its successor. */
-export function standing(frames: readonly Frame[]): Frame[] {
+export function standing(frames: readonly SessionFrame[]): SessionFrame[] {
   return frames.filter((frame) => frame.superseded_by === null);
 }

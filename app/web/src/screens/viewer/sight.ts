@@ -12,8 +12,8 @@ export interface SolveName {
   isSet?: true;
 }
 
-export const PANELS = ['look', 'pixel', 'measure', 'compare', 'why', 'finish'] as const;
-export type Panel = (typeof PANELS)[number];
+export const VIEWER_PANELS = ['look', 'pixel', 'measure', 'compare', 'why', 'finish'] as const;
+export type ViewerPanel = (typeof VIEWER_PANELS)[number];
 
 export interface Sight {
   layer: string;
@@ -37,7 +37,7 @@ export interface Sight {
   line: [Point, Point] | null;
   box: Box | null;
   /** What stands beside the picture. */
-  panel: Panel;
+  panel: ViewerPanel;
 }
 
 const upperLeft: Vector = [-0.5, 0.5, Math.SQRT1_2];
@@ -114,7 +114,7 @@ export function sightOf(query: URLSearchParams): Sight {
     pixel: pixel && {x: pixel[0]!, y: pixel[1]!},
     line: line && [{x: line[0]!, y: line[1]!}, {x: line[2]!, y: line[3]!}],
     box: box && {x: box[0]!, y: box[1]!, width: box[2]!, height: box[3]!},
-    panel: PANELS.find((panel) => panel === query.get('panel')) ?? FIRST_SIGHT.panel,
+    panel: VIEWER_PANELS.find((panel) => panel === query.get('panel')) ?? FIRST_SIGHT.panel,
   };
 }
 

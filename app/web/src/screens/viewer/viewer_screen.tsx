@@ -6,17 +6,17 @@ import {become, go, place} from '../../state/address';
 import {clothOf} from '../../state/cloths';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
-import {useLatest} from '../../ui/use_latest';
 import {Tabs} from '../../ui/tabs';
+import {useLatest} from '../../ui/use_latest';
 import {MadePanel} from '../finish/found';
 import {FinishPanel} from '../finish/panel';
 import {zoomInWords} from './bars';
 import type {PictureCanvas} from './canvas';
 import {ComparePanel, optionsOf, useSolves} from './compare_panel';
+import {LayerPanel} from './layer_panel';
 import {saysOf} from './layers';
 import {lightInWords} from './light';
 import {LightPanel} from './light_panel';
-import {LayerPanel} from './layer_panel';
 import {NoSession} from './no_session';
 import {Picture} from './picture';
 import {PixelPanel} from './pixel_panel';
@@ -24,7 +24,7 @@ import {valuesOf} from './probe';
 import {RegionPanel} from './region_panel';
 import {RulerPanel} from './ruler_panel';
 import {optionOf, useSets} from './sets';
-import {addressOfViewer, nameOf, type Panel, PANELS, solveNameOf, type SolveName, textOf} from './sight';
+import {addressOfViewer, nameOf, solveNameOf, type SolveName, textOf, VIEWER_PANELS, type ViewerPanel} from './sight';
 import {Toolbar, useViewerKeys} from './toolbar';
 import {Viewer} from './viewer';
 import {WhyPanel} from './why_panel';
@@ -113,14 +113,14 @@ function StatusLine({viewer}: {viewer: Viewer}) {
   );
 }
 
-const names: Record<Panel, string> = {look: 'Look', pixel: 'Pixel', measure: 'Measure', compare: 'Compare', why: 'Why', finish: 'Finish'};
+const names: Record<ViewerPanel, string> = {look: 'Look', pixel: 'Pixel', measure: 'Measure', compare: 'Compare', why: 'Why', finish: 'Finish'};
 
 /** A set of maps lies on a grid of its own, so that it is compared with nothing. */
 function panelsOf({isSet}: SolveName) {
-  return PANELS.filter((panel) => !(isSet && panel === 'compare')).map((value) => ({value, says: names[value]}));
+  return VIEWER_PANELS.filter((panel) => !(isSet && panel === 'compare')).map((value) => ({value, says: names[value]}));
 }
 
-function Chosen({viewer, panel}: {viewer: Viewer; panel: Panel}) {
+function Chosen({viewer, panel}: {viewer: Viewer; panel: ViewerPanel}) {
   switch (panel) {
     case 'look':
       return <><LayerPanel viewer={viewer} /><LightPanel viewer={viewer} /></>;

@@ -3,9 +3,9 @@
 import type {Schemas} from '../../api/client';
 import {digits} from '../../ui/say';
 
-export type Report = Schemas['SolveReport'];
+export type SolveReport = Schemas['SolveReport'];
 
-export interface Stage {
+export interface SolveStage {
   name: string;
   ran: boolean;
   says: string;
@@ -61,7 +61,7 @@ export interface Warning {
 }
 
 /** The report's parts as docs/formats.md has them; null where the solve has none. */
-export function partsOf(report: Report) {
+export function partsOf(report: SolveReport) {
   return {
     conditions: (report.conditions ?? {}) as Conditions,
     registration: (report.registration ?? []) as unknown as ShotPlace[],
@@ -86,7 +86,7 @@ function foundOf(hot: number): string {
   return hot === 0 ? 'None was found.' : `${hot} were given their neighbours' counts.`;
 }
 
-function ofConditions(conditions: Conditions): Stage[] {
+function ofConditions(conditions: Conditions): SolveStage[] {
   const {hot_photosites: hot, veil, brackets = 0, drift = [], cloth_gains: told, left_out: leftOut = []} = conditions;
   const most = Math.max(0, ...drift.map(({factor}) => Math.abs(factor - 1)));
   return [
@@ -111,7 +111,7 @@ function ofConditions(conditions: Conditions): Stage[] {
   ];
 }
 
-function ofRegistration(shots: readonly ShotPlace[]): Stage {
+function ofRegistration(shots: readonly ShotPlace[]): SolveStage {
   const moved = shots.filter(({corrected}) => corrected);
   const flagged = shots.filter(({verdict}) => verdict === 'flagged');
   const list = (these: readonly ShotPlace[]) => these.map(({led, dx_px, dy_px}) => `LED ${led} by ${digits(Math.hypot(dx_px, dy_px))} px`).join(', ');
@@ -126,7 +126,7 @@ const lightStages: readonly {stage: string; name: string}[] = [
   {stage: 'interreflection', name: 'Light between yarns'},
 ];
 
-function ofReference(reference: Reference | null): Stage[] {
+function ofReference(reference: Reference | null): SolveStage[] {
   return lightStages.map(({stage, name}) => {
     if (!reference) return {name, ran: false, says: 'Taken out at the level reference alone.'};
     const said = reference.left_out?.find((each) => each.stage === stage);
@@ -141,7 +141,7 @@ function robustInWords(share: number | undefined): string {
   return share > 0 ? `On ${percent(share)} of the frame, where it predicted left-out light better.` : 'Nowhere did it predict left-out light better.';
 }
 
-function ofRobust({robust_share: share, rejected_readings: rejected = 0}: SolvedBy): Stage[] {
+function ofRobust({robust_share: share, rejected_readings: rejected = 0}: SolvedBy): SolveStage[] {
   return [
     {
       name: 'Robust against highlights',
@@ -152,12 +152,12 @@ function ofRobust({robust_share: share, rejected_readings: rejected = 0}: Solved
   ];
 }
 
-function ofGloss(gloss: Report['gloss']): Stage {
+function ofGloss(gloss: SolveReport['gloss']): SolveStage {
   return {name: 'Gloss', ran: gloss?.used ?? false, says: gloss ? `${gloss.says}.` : 'Not at this level.'};
 }
 
 /** Every stage, in the order in which a solve comes by them. */
-export function stagesOf(report: Report): Stage[] {
+export function stagesOf(report: SolveReport): SolveStage[] {
   const {conditions, registration, sharpening, lateral, reference, solvedBy} = partsOf(report);
   return [
     ...ofConditions(conditions),

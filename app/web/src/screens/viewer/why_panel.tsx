@@ -2,14 +2,14 @@
 import {useState} from 'preact/hooks';
 import {answer, api, type ApiError, asApiError} from '../../api/client';
 import {Complaint} from '../../ui/complaint';
-import {useLatest} from '../../ui/use_latest';
 import {digits} from '../../ui/say';
+import {useLatest} from '../../ui/use_latest';
 import type {SolveName} from './sight';
-import {type Gate, type LeftOutCheck, partsOf, type Report, type Stage, stagesOf} from './why';
+import {type Gate, type LeftOutCheck, partsOf, type SolveReport, type SolveStage, stagesOf} from './why';
 import type {Viewer} from './viewer';
 
-function useReport({session, solve}: SolveName): {report: Report | null; complaint: ApiError | null} {
-  const [report, setReport] = useState<Report | null>(null);
+function useReport({session, solve}: SolveName): {report: SolveReport | null; complaint: ApiError | null} {
+  const [report, setReport] = useState<SolveReport | null>(null);
   const [complaint, setComplaint] = useState<ApiError | null>(null);
   useLatest((latest) => {
     if (solve === 'truth') return;
@@ -35,7 +35,7 @@ export function WhyPanel({viewer}: {viewer: Viewer}) {
   );
 }
 
-function Told({report}: {report: Report}) {
+function Told({report}: {report: SolveReport}) {
   const {warnings, check, gates, seconds} = partsOf(report);
   return (
     <>
@@ -51,7 +51,7 @@ function Told({report}: {report: Report}) {
   );
 }
 
-function StageRow({stage: {name, ran, says}}: {stage: Stage}) {
+function StageRow({stage: {name, ran, says}}: {stage: SolveStage}) {
   return (
     <li class={ran ? 'ran' : ''}>
       <strong>{ran ? '●' : '○'} {name}</strong> <span class="dim">{ran ? 'ran' : 'did not run'}</span>
