@@ -7,7 +7,7 @@ import {Archive} from '../page/support/archive.mjs';
 import {launch, visit} from '../page/support/browser.mjs';
 import {startRig} from '../page/support/rig.mjs';
 
-const minutes = Number(process.env.WEFT_MINUTES ?? 0);  // of panning
+const minutes = Number(process.env.WEFT_MINUTES ?? 0);  // that it pans
 const solve = {session: 'wide', id: '0123456789abcdef'};
 const places = [[0.2, 0.2], [0.8, 0.3], [0.3, 0.8], [0.7, 0.7], [0.5, 0.2]];
 const window = {width: 1280, height: 720};

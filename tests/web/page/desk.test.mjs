@@ -242,7 +242,7 @@ test('a key at the dark page shows how things are for two seconds, and Escape an
 });
 
 test('live view asks for one picture at a time, and for none while its tab is hidden', async (t) => {
-  const fine = await startRig({megapixels: 1});  // of fewer the tags are too coarse for a finder
+  const fine = await startRig({megapixels: 1});  // with fewer the tags are too coarse for a finder
   t.after(() => fine.stop());
   const visitor = await visit(browser, fine);
   const page = await atTheDesk(visitor, fine);

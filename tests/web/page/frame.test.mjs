@@ -156,7 +156,7 @@ test('a screen that was first asked for while the daemon was gone is there once 
   const visitor = await visit(browser, rig);
   visitor.mayFail(/net::ERR_/, /Failed to load resource/);
   const pages = [await enter(visitor), await enter(visitor, 'doctor'), await enter(visitor, 'sessions')];
-  await pages[2].getByRole('link', {name: 'Doctor', exact: true}).click();  // of this one the screen is there already
+  await pages[2].getByRole('link', {name: 'Doctor', exact: true}).click();  // whose screen is there already
   await pages[2].locator('main').getByRole('heading', {name: 'Doctor'}).waitFor();
   const {port} = rig;
   await rig.stopServing('SIGKILL');

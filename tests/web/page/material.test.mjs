@@ -73,7 +73,7 @@ async function openMaterial(visitor, query = '') {
   return page;
 }
 
-/** Of a row or column of the canvas: the first and the last pixel of the cloth. */
+/** The first and the last pixel of the cloth in a row or column of the canvas. */
 function extent(shot, box, along) {
   const of = (x, y) => shot.data[4 * (y * shot.width + x) + 1] > 20;
   const middle = Math.floor(along === 'x' ? box.y + box.height / 2 : box.x + box.width / 2);
@@ -307,7 +307,7 @@ test('a material shows its layers and the files behind them, is built and looked
   await visitor.leave();
 });
 
-/** Of each channel the mean of a picture, in linear light. */
+/** The mean of a picture in each channel, in linear light. */
 function meansOf(shot) {
   const linear = (byte) => (byte <= 10 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4);
   const sums = [0, 0, 0];

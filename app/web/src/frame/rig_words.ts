@@ -5,7 +5,7 @@ import {durationOf} from '../ui/words';
 
 type Status = Schemas['Status'];
 
-/** Of a daemon that is not heard. A connection that broke is known at once, before there was any silence. */
+/** A connection that broke is known at once, before there was any silence. */
 export function silenceInWords(age_s: number): string {
   if (age_s === 0) return 'The daemon does not answer.';
   return `The daemon has said nothing for ${age_s < 10 ? `${age_s} s` : durationOf(age_s)}.`;

@@ -22,7 +22,7 @@ export interface ClothLayer {
   layer: string;
   kind: TileKind;
   target: Target;
-  /** Of a scalar: which of the target's channels. */
+  /** Which of the target's channels has this scalar. */
   channel?: number;
 }
 
@@ -44,7 +44,7 @@ export interface ClothLook {
   cloth_mm: [number, number];
   /** How many pieces are shown a side; null: as many as there is room for. */
   cells: number | null;
-  /** Of the ball; 0: flat. */
+  /** Radius of the ball; 0: flat. */
   radius_mm: number;
   slant_deg: number;
   light: Vector;

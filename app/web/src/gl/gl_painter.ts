@@ -11,7 +11,7 @@ import type {Size} from './view';
 
 export class GlPainter extends Painter {
   protected readonly store: TileStore<TileTexture>;
-  /** Of tiles on their way: how the bytes are to be read. */
+  /** How the bytes of tiles on their way are to be read. */
   private readonly kinds = new Map<string, {sheet: Sheet; tile: Tile}>();
   /** By texture, what is drawn on it. */
   private readonly drawn = new Map<string, string>();

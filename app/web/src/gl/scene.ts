@@ -17,7 +17,7 @@ export interface Side {
   mode: Mode;
   /** What is seen: 'sigma', 'difference', 'bent_normal'. */
   layer: string;
-  /** Of a difference: the other solve, as SESSION/SOLVE. */
+  /** The solve that a difference is taken to, as SESSION/SOLVE; null: it is none. */
   other: string | null;
   /** What colours are multiplied by before the exposure: not 1 where the albedo has no absolute scale. */
   gain: number;
@@ -59,7 +59,7 @@ export interface Sheet {
   query: string;
   kind: TileKind;
   target: LayerName;
-  /** Of flags: which of the target's four channels. */
+  /** Which of the target's four channels has these flags. */
   channel: number;
 }
 

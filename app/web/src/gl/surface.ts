@@ -32,7 +32,7 @@ export interface Shading {
   gain: number;
   range: [number, number];
   bit_colours: Rgb[];
-  /** Of the canvas, in pixels: what is shaded. */
+  /** What is shaded, in pixels of the canvas: the other side of a divider is not. */
   from_x: number;
   to_x: number;
   /** 2: at half the resolution, while a hand moves the light. */

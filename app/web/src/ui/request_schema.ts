@@ -23,7 +23,7 @@ export interface SchemaField {
   otherwise: FieldValue | null;
   /** What it names: a session, a folder, a file. */
   names: string;
-  /** Of a list of things what each may say. */
+  /** What each thing of a list may say; null: it holds none. */
   each: Schema | null;
   isNeeded: boolean;
 }

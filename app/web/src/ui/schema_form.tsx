@@ -12,7 +12,7 @@ interface SchemaFormProps {
   onWish: (wish: Wish) => void;
   /** Fields that the screen says itself. */
   without?: readonly string[];
-  /** Of the names of its fields, where several such forms are shown. */
+  /** Begins the names of its fields: several such forms may be shown at once. */
   prefix?: string;
 }
 

@@ -25,7 +25,7 @@ export function launch(...more) {
 /** A person at a browser of their own. */
 export class Visitor {
   #faults = [];
-  #mayFail = [/status of 400 .*\/jobs\/\d+\/cancel$/];  // of a job that had just ended
+  #mayFail = [/status of 400 .*\/jobs\/\d+\/cancel$/];  // the job had just ended
 
   constructor(context, origins) {
     this.context = context;

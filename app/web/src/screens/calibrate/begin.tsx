@@ -13,7 +13,7 @@ import {fromOf, setOf, type Walk, type WalkStage} from './walk';
 type Thing = NonNullable<WalkStage['thing']>;
 interface Described {
   wish: Wish;
-  /** Of a file, in place of the form; empty: none was chosen. */
+  /** What a file says in place of the form; empty: none was chosen. */
   text: string;
 }
 

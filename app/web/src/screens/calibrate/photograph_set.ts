@@ -84,7 +84,7 @@ export function factsOf(photograph: Photograph): string[] {
   ];
 }
 
-/** Of a series that is taken at once: how many photographs it needs; null: it is one photograph. */
+/** How many photographs a series needs that is taken at once; null: it is one photograph. */
 export function wantedOf(photograph: Photograph): number | null {
   return numberIn(photograph.facts, 'wanted');
 }

@@ -140,7 +140,7 @@ export function trialOf(walk: Walk, stage: WalkStage, set: PhotographSet, known:
   return {...inputsOf(walk, stage, known), request_id: [setOf(walk, stage), ...used].join('.')} as JobRequest;
 }
 
-/** Of a walk that was begun: all results beside the rig file that carry a walk's name, the newest first. */
+/** Walks that were begun, the newest first: results beside the rig file carry their names. */
 export function walksIn(known: Known): Walk[] {
   const walks = new Map<string, Walk>();
   const dated = [

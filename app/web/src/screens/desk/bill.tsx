@@ -14,7 +14,7 @@ export function costOf({shots, seconds}: BillLine): string {
   return costInWords(shots, seconds);
 }
 
-/** Of the whole scan; without a time where that of some shots is not known. */
+/** What the whole scan takes: without a time where that of some shots is not known. */
 export function totalOf(bill: readonly BillLine[]): string {
   const shots = bill.reduce((sum, line) => sum + line.shots, 0);
   const seconds = bill.reduce<number | null>((sum, line) => (sum === null || line.seconds === null ? null : sum + line.seconds), 0);

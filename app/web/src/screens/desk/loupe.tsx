@@ -7,7 +7,7 @@ export const tile = 512;
 
 export interface PlacedTile {
   name: string;
-  /** Of its corner, from that of the loupe, in pixels of the photograph. */
+  /** Where its corner is from that of the loupe, in pixels of the photograph. */
   left: number;
   top: number;
 }

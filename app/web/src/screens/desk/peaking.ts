@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edges of the finder's picture that stand out from its own noise: what is sharp, and where.
 
-/** Of a colour that cloth seldom has. */
+/** A colour that cloth seldom has. */
 const peak = [255, 64, 200, 255] as const;
-/** Of the quietest tenth of the picture, where noise alone makes differences: an edge has so many times as much. */
+/** In the quietest tenth of the picture noise alone makes differences: an edge has so many times as much. */
 const quiet = 0.1;
 const factor = 8;
 const least = 24;

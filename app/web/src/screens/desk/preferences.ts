@@ -12,10 +12,10 @@ function kept<T>(name: string, first: T): Signal<T> {
 
 export const showsGrid = kept<boolean>('grid', true);
 export const showsEdges = kept<boolean>('edges', false);
-/** Of the picture, for who sits on the other side. */
+/** Turns the picture, for who sits on the other side. */
 export const turn = kept<'0' | '180'>('turn', '0');
 
-/** Of a scan: the first LED and the dark once more at its end. */
+/** Whether a scan takes the first LED and the dark once more at its end. */
 export const repeats = kept<boolean>('repeat', true);
-/** Of a scan: each LED once more at so many times the exposure; empty: not. */
+/** A scan takes each LED once more at so many times the exposure; empty: it does not. */
 export const bracket = kept<string>('bracket', '');

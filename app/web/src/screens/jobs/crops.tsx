@@ -8,7 +8,7 @@ import {durationOf} from '../../ui/words';
 import type {Level} from './ladder';
 
 interface CropsProps {
-  /** Of the price. */
+  /** The job that found the price: its pictures are asked for by its id. */
   job: string;
   levels: readonly Level[];
   onChoose: (quality: Quality) => void;

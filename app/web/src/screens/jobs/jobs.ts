@@ -10,7 +10,7 @@ const pageLength = 50;
 
 export const jobs = signal<readonly Job[]>([]);
 export const queue = computed(() => queueOf(jobs.value));
-/** Of the next page of history; null: all are here. */
+/** Where the next page of history begins; null: all are here. */
 export const olderThan = signal<string | null>(null);
 export const complaint = signal<ApiError | null>(null);
 

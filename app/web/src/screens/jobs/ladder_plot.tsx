@@ -17,7 +17,7 @@ interface LadderPlotProps {
 const partMarks = {noise: '○', model: '△', calibration: '□'} as const;
 type PartName = keyof typeof partMarks;
 const partNames = Object.keys(partMarks) as PartName[];
-/** Of the whole error: a smaller part says nothing of it, and would stretch the axis. */
+/** A part with a smaller share of the error says nothing of it, and would stretch the axis. */
 const leastShare = 0.02;
 const nameWidth_px = 74;
 const lane_px = 15;

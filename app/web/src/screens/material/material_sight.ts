@@ -19,7 +19,7 @@ export const BALLS_MM = [20, 50, 150] as const;
 
 export interface MaterialSight {
   shape: Shape;
-  /** Of the plane, pieces a side. */
+  /** Pieces a side of the plane. */
   repeat: (typeof REPEATS)[number];
   /** Diameter of the ball where its maps repeat. */
   ball_mm: number;

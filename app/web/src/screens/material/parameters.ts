@@ -12,7 +12,7 @@ export interface Parameter {
   /** What the document says of it: why it is a number, what was typed. */
   why: string;
   unit: string;
-  /** Of a map its mean. Null: not known. */
+  /** A map has its mean here. Null: not known. */
   value: number | null;
   /** Red, green and blue of what is the same everywhere. */
   rgb: [number, number, number] | null;

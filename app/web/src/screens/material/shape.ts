@@ -4,7 +4,7 @@ import type {Size} from '../../gl/view';
 import type {MaterialSight} from './material_sight';
 
 export interface ClothExtent {
-  /** Of one piece. */
+  /** One piece, however often it is laid beside itself. */
   size_mm: [number, number];
   /** False: nobody knows its millimetres, and `size_mm` tells its proportions alone. */
   is_known: boolean;

@@ -4,7 +4,7 @@ interface SliderProps {
   label: string;
   value: number;
   ends: readonly [number, number];
-  /** Of the value in words. */
+  /** The value in words, where its number alone says too little. */
   says?: string;
   isAssumed?: boolean;
   onChange: (value: number) => void;

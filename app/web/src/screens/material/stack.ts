@@ -96,7 +96,7 @@ export function ownValues({values}: Pick<Resolved, 'values'>): MaterialValue[] {
   return values.filter(({key}) => !key.startsWith('layer.'));
 }
 
-/** Of what a job of the kind material left. */
+/** The id of what a job of the kind material built. */
 export function builtBy(result: unknown): string {
   return textIn(listIn(result, 'materials')[0], 'id');
 }

@@ -26,7 +26,7 @@ export const fields: {field: FormField; label: string; unit?: string}[] = [
 /** What people said of a cloth, and how often that was changed. */
 export type Said = Pick<Summary, FormField | 'tags' | 'revision'>;
 
-/** Of one session's document; null: it cannot be read. */
+/** Null: the session's document cannot be read. */
 export function saidOf({fabric, said}: Schemas['Session']): Said | null {
   if (!said) return null;
   return {

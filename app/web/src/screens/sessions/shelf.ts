@@ -9,7 +9,7 @@ const pageLength = 200;
 
 export interface Shelf {
   sessions: readonly Summary[];
-  /** Of all pages. */
+  /** How many there are on all pages, those not asked for yet too. */
   total: number;
   /** Key of the next page; null: all are here. */
   after: number | null;
@@ -23,7 +23,7 @@ export const complaint = signal<ApiError | null>(null);
 export const tags = signal<readonly string[]>([]);
 
 let question: Record<string, string> = {};
-/** Of the search that is shown: an answer to one before it comes too late. */
+/** The number of the search that is shown: an answer to one before it comes too late. */
 let search = 0;
 let isAsking = false;
 

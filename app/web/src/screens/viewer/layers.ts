@@ -24,7 +24,7 @@ export const LAYERS: readonly LayerChoice[] = [
   {name: 'condition', says: 'Condition', key: '8'},
   {name: 'roughness', says: 'Roughness', key: '9'},
 ];
-/** Of two solves together. */
+/** Layers that take two solves. */
 export const DIFFERENCES: readonly LayerChoice[] = [
   {name: 'difference', says: 'Difference', key: 'd'},
   {name: 'albedo_difference', says: 'Albedo difference', key: 'a'},

@@ -51,7 +51,7 @@ function pencilOf(viewer: Viewer): Pencil {
   return viewer.pencil.value ?? {at: {x: Math.floor(x) + 0.5, y: Math.floor(y) + 0.5}, begin: null};
 }
 
-/** A step is a pixel of the map, or a pixel of the canvas where that is farther: one that cannot be seen leads nobody. */
+/** A step is a pixel of the map, or of the canvas where that is farther: a smaller one would not be seen. */
 function lead(viewer: Viewer, by: Point): void {
   const map = viewer.maps.value?.solve;
   const view = viewer.view.value;
