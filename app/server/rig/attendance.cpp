@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "capture/raw/decode_raw.h"
@@ -21,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLight_s = 1e-3 * static_cast<double>(Attendance::kLightLease.count());
-constexpr double kMostLit_s = 40;  // of a LED at once, by its board
 constexpr auto kLook = std::chrono::milliseconds(100);
 
 Error is_closed(const std::string& rig) {
@@ -33,35 +29,10 @@ Error is_scanning(const std::string& rig) {
   return {ErrorKind::kTryAgain, "a scan has the devices", rig, "", "wait for its end, or cancel it"};
 }
 
-bool may_pass(const Error& error) {
-  return error.kind == ErrorKind::kTryAgain || error.kind == ErrorKind::kProtocol;
-}
-
 Calibration calibration_of(const capture::Rig& rig) {
   const fs::path folder = capture::calibration_now(rig);
   Result<Calibration> calibration = folder.empty() ? Calibration() : read_calibration(folder);
   return calibration ? std::move(*calibration) : Calibration();
-}
-
-std::optional<capture::PhotositeNoise> noise_of(const Calibration& calibration) {
-  if (!calibration.response) return std::nullopt;
-  return capture::PhotositeNoise{calibration.response->electrons_per_count,
-                                 calibration.response->read_noise_counts};
-}
-
-/// Those of all LEDs of the rig.
-std::optional<capture::PatchLights> lights_of(const Calibration& calibration, const capture::Rig& rig) {
-  if (!calibration.camera || !calibration.lights) return std::nullopt;
-  Result<capture::PatchLights> lights = capture::PatchLights::make(calibration, rig.scan.cloth_height_mm);
-  if (!lights || lights->leds.size() < static_cast<std::size_t>(rig.leds)) return std::nullopt;
-  return std::move(*lights);
-}
-
-/// Whether two photographs that cannot be metered by are of the same cloth, as far as they tell.
-bool are_alike(const capture::Brightness& a, const capture::Brightness& b) {
-  constexpr double kAlike = 0.1;
-  return std::abs(a.bright - b.bright) <= kAlike * b.bright &&
-         std::abs(a.clipped - b.clipped) <= kAlike * std::max(b.clipped, 0.001);
 }
 
 }  // namespace
@@ -72,7 +43,9 @@ Attendance::Attendance(capture::Rig rig, capture::OpenDevices open, fs::path fol
       open_(std::move(open)),
       folder_(std::move(folder)),
       screens_(screens),
-      told_(std::move(told)) {
+      told_(std::move(told)),
+      reader_(rig_),
+      turns_(rig_.leds) {
   std::error_code ignored;
   fs::remove_all(folder_, ignored);  // shots of a daemon before this one
   watch_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
@@ -130,11 +103,8 @@ Result<void> Attendance::open_held() {
   if (!facts) return std::move(facts).error();
   if (Result<std::vector<double>> times = devices->camera->shutter_times_us(); times)
     know_exposures(std::move(*times));
-  devices_ = std::move(*devices);
-  set_.reset();
-  const Calibration calibration = calibration_of(rig_);
-  noise_ = noise_of(calibration);
-  lights_ = lights_of(calibration, rig_);
+  devices_.emplace(std::move(*devices));
+  reader_.calibrate(calibration_of(rig_));
   feel_heat_held();
   change([&](Status& status) { status.camera = std::move(*facts); });
   return {};
@@ -142,10 +112,7 @@ Result<void> Attendance::open_held() {
 
 Result<void> Attendance::close() {
   const std::lock_guard devices(devices_mutex_);
-  Result<void> dark;
-  if (devices_) {
-    if (const Result<double> off = devices_->lamps->light({}, 1); !off) dark = off.error();
-  }
+  Result<void> dark = devices_ ? devices_->go_dark() : Result<void>();
   devices_.reset();
   change([&](Status& status) {
     status.is_open = status.is_live = false;
@@ -155,38 +122,30 @@ Result<void> Attendance::close() {
   return dark;
 }
 
-// A device does not do what it should: closed, and why.
-void Attendance::fail_held(const Error& error) {
+void Attendance::close_if_broken_held() {
+  const std::optional<Error> why = devices_->broken();
+  if (!why) return;
   devices_.reset();
   change([&](Status& status) {
-    status.is_open = false;
+    status.is_open = status.is_live = false;
     status.lit.clear();
-    status.is_live = false;
-    status.error = error;
+    status.error = why;
     open_until_ = {};
   });
 }
 
-Result<double> Attendance::light_held(const std::vector<int>& leds, double most_s) {
-  Result<double> rest = devices_->lamps->light(leds, most_s);
-  if (!rest && may_pass(rest.error())) {
-    if (Result<void> back = devices_->lamps->recover(); !back) {
-      rest = std::move(back).error();
-    } else {
-      rest = devices_->lamps->light(leds, most_s);
-    }
-  }
-  if (!rest && rest.error().kind != ErrorKind::kUsage) fail_held(rest.error());
-  if (rest) feel_heat_held();
-  return rest;
-}
-
 /// What cannot be told is not shown.
 void Attendance::feel_heat_held() {
-  Result<std::vector<double>> seconds = devices_->lamps->can_light_s();
+  Result<std::vector<double>> seconds = devices_->can_light_s();
   const std::lock_guard lock(mutex_);
-  can_light_s_ = seconds ? std::move(*seconds) : std::vector<double>();
-  felt_ = Clock::now();
+  heat_ = {seconds ? std::move(*seconds) : std::vector<double>(), Clock::now()};
+}
+
+Result<double> Attendance::light_held(const std::vector<int>& leds, double most_s) {
+  Result<double> rest = devices_->light(leds, most_s);
+  close_if_broken_held();
+  if (rest) feel_heat_held();
+  return rest;
 }
 
 Result<Attendance::Lit> Attendance::light(const std::vector<int>& leds) {
@@ -209,27 +168,11 @@ Result<Attendance::Lit> Attendance::light(const std::vector<int>& leds) {
 }
 
 Result<Attendance::Lit> Attendance::light_in_turns() {
-  const std::vector<double> seconds = status().can_light_s;
+  const std::vector<double> can_light_s = status().can_light_s;
   int led = 0;
   {
     const std::lock_guard lock(mutex_);
-    const auto can = [&](int each) {
-      const auto i = static_cast<std::size_t>(each) - 1;
-      return i < seconds.size() ? seconds[i] : 0;
-    };
-    const Clock::time_point now = Clock::now();
-    const bool goes_on = turn_ > 0 && now < turn_began_ + kTurn && can(turn_) > kLight_s;
-    if (!goes_on) {
-      // From the one that follows, so that those that are as cool as each other go round.
-      int next = turn_ % rig_.leds + 1;
-      for (int i = 1; i < rig_.leds; ++i) {
-        const int other = (turn_ + i) % rig_.leds + 1;
-        if (other != turn_ && can(other) > can(next)) next = other;
-      }
-      turn_ = next;
-      turn_began_ = now;
-    }
-    led = turn_;
+    led = turns_.turn(can_light_s, kLight_s, Clock::now());
   }
   return light({led});
 }
@@ -245,12 +188,11 @@ Result<Attendance::Look> Attendance::look(std::int64_t after) {
   const std::lock_guard devices(devices_mutex_);
   if (!devices_) return is_closed(rig_.name);
   if (look_.number > after && status().is_live) return look_;
-  Result<std::string> jpeg = devices_->camera->look();
+  Result<std::string> jpeg = devices_->look();
   if (!jpeg) {
-    const Error error = jpeg.error();
-    if (const Result<capture::CameraFacts> back = devices_->camera->recover(); !back) fail_held(back.error());
+    close_if_broken_held();
     change([](Status& status) { status.is_live = false; });
-    return error;
+    return std::move(jpeg).error();
   }
   look_ = {look_.number + 1, std::move(*jpeg)};
   if (!status().is_live) change([](Status& status) { status.is_live = true; });
@@ -258,7 +200,7 @@ Result<Attendance::Look> Attendance::look(std::int64_t after) {
 }
 
 void Attendance::end_look_held() {
-  if (devices_) static_cast<void>(devices_->camera->stop_looking());
+  if (devices_) devices_->stop_looking();
   change([](Status& status) { status.is_live = false; });
 }
 
@@ -284,14 +226,11 @@ Result<int> Attendance::shoot(int led, double wanted_us) {
   }
   renew();
   is_shooting_ = true;
-  TestShot shot;
-  shot.id = ++newest_;
-  shot.led = led;
-  shot.exposure_us = *exposure_us;
-  shots_.push_back(shot);
+  TestShot shot = shots_.begin(led, *exposure_us);
+  const int id = shot.id;
   last = std::move(shooter_);
   shooter_ = std::jthread([this, shot = std::move(shot)] { take(shot); });
-  return newest_;
+  return id;
 }
 
 void Attendance::take(TestShot shot) {
@@ -302,47 +241,39 @@ void Attendance::take(TestShot shot) {
   screens_.wait_until_black();
   {
     const std::lock_guard devices(devices_mutex_);
-    Result<FrameFile> frame =
-        devices_ ? photograph_held(shot.led, shot.exposure_us, fmt::format("shot{:06}", shot.id))
-                 : Result<FrameFile>(is_closed(rig_.name));
-    if (frame) {
-      shot.frame = std::move(*frame);
-      look_at_held(shot);
-    } else {
-      shot.error = std::move(frame).error();
-    }
-    std::vector<int> again;
-    double left_s = 0;
-    {
-      const std::lock_guard lock(mutex_);
-      left_s = std::chrono::duration<double>(lit_until_ - Clock::now()).count();
-      if (left_s > 0) again = wanted_;
-    }
-    if (devices_ && !again.empty()) {
-      if (const Result<double> rest = light_held(again, left_s); !rest || *rest > 0) again.clear();
-    }
+    photograph_and_read_held(shot);
+    const std::vector<int> lit = light_again_held();
     change([&](Status& status) {
       status.doing.clear();
       status.is_dark = false;
-      status.lit = again;
+      status.lit = lit;
     });
   }
   keep(shot);
   told_.shot(shot);
 }
 
+void Attendance::photograph_and_read_held(TestShot& shot) {
+  Result<FrameFile> frame = devices_ ? photograph_held(shot.led, shot.exposure_us, stem_of_shot(shot.id))
+                                     : Result<FrameFile>(is_closed(rig_.name));
+  if (!frame) {
+    shot.error = std::move(frame).error();
+    return;
+  }
+  shot.frame = std::move(*frame);
+  const Result<RawFrame> decoded = capture::decode_raw(shot.frame->file);
+  if (!decoded) return;  // its histogram says why
+  shot.reading =
+      reader_.read(*decoded, shot.led, shot.exposure_us, status().exposures_us,
+                   [this](int led, double exposure_us) { return meter_shot_held(led, exposure_us); });
+}
+
 Result<FrameFile> Attendance::photograph_held(int led, double exposure_us, const std::string& stem) {
   if (status().is_live) end_look_held();
   if (Result<void> made = make_writable_folder(folder_); !made) return std::move(made).error();
-  const capture::ExposureSettings exposure = {exposure_us, rig_.scan.iso, rig_.scan.f_number};
-  if (set_ != exposure) {
-    set_.reset();
-    if (const Result<capture::CameraFacts> set = devices_->camera->set(exposure); !set) {
-      if (set.error().kind == ErrorKind::kNoDevice) fail_held(set.error());
-      return set.error();
-    }
-    set_ = exposure;
-  }
+  const Result<void> set = devices_->set({exposure_us, rig_.scan.iso, rig_.scan.f_number});
+  close_if_broken_held();
+  if (!set) return set.error();
   const double most_s = capture::ScanOptions().lamp_margin_s + 1e-6 * exposure_us;
   const std::vector<int> leds = led > 0 ? std::vector{led} : std::vector<int>();
   const Result<double> rest = light_held(leds, most_s);
@@ -352,52 +283,34 @@ Result<FrameFile> Attendance::photograph_held(int led, double exposure_us, const
                  fmt::format("it has to rest for {:.0f} s", *rest), "take the shot after that"};
   }
   change([&](Status& status) { status.lit = leds; });
-  Result<capture::Photograph> photograph =
-      devices_->camera->take(folder_ / stem, [&] { static_cast<void>(devices_->lamps->light({}, 1)); });
-  if (photograph) return FrameFile{photograph->file, photograph->sha256, {}};
-  static_cast<void>(devices_->lamps->light({}, 1));
-  set_.reset();
-  if (const Result<capture::CameraFacts> back = devices_->camera->recover(); !back) fail_held(back.error());
-  return std::move(photograph).error();
+  Result<capture::Photograph> photograph = devices_->take(folder_ / stem);
+  close_if_broken_held();
+  if (!photograph) return std::move(photograph).error();
+  return FrameFile{photograph->file, photograph->sha256, {}};
 }
 
-/// Of one that cannot be decoded nothing is told here: its histogram says why.
-void Attendance::look_at_held(TestShot& shot) {
-  const Result<RawFrame> frame = capture::decode_raw(shot.frame->file);
-  if (!frame) return;
-  shot.size = frame->counts.size();
-  if (shot.led != series_led_ || shot.exposure_us != series_us_) {
-    series_ = {};
-    metered_.reset();
+Result<capture::Brightness> Attendance::meter_shot_held(int led, double exposure_us) {
+  if (!devices_ || is_wanted()) return is_closed(rig_.name);
+  const Result<FrameFile> photograph = photograph_held(led, exposure_us, "meter");
+  if (!photograph) return photograph.error();
+  const Result<RawFrame> frame = capture::decode_raw(photograph->file);
+  std::error_code ignored;
+  fs::remove(photograph->file, ignored);
+  return frame ? Result<capture::Brightness>(capture::brightness_of(*frame)) : frame.error();
+}
+
+/// Those that the light's lease still asks for, as far as the board lights them.
+std::vector<int> Attendance::light_again_held() {
+  std::vector<int> leds;
+  double left_s = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    left_s = std::chrono::duration<double>(lit_until_ - Clock::now()).count();
+    if (left_s > 0) leds = wanted_;
   }
-  series_led_ = shot.led;
-  series_us_ = shot.exposure_us;
-  shot.focus = series_.add(capture::focus_of(*frame, noise_));
-  if (shot.led > 0)
-    shot.suggested_us = suggested_held({shot.led, shot.exposure_us, capture::brightness_of(*frame)});
-}
-
-/// What a scan of this cloth would be exposed with; none where its meter fails.
-std::optional<double> Attendance::suggested_held(const capture::MeteredShot& shot) {
-  std::vector<int> leds(static_cast<std::size_t>(rig_.leds));
-  std::iota(leds.begin(), leds.end(), 1);
-  const capture::MeterInput input =
-      capture::meter_input(std::move(leds), status().exposures_us, lights_, rig_.scan.iso);
-  if (const std::optional<double> read_us = capture::metered_by(shot, input)) return read_us;
-  if (metered_ && are_alike(shot.seen, metered_->seen)) return metered_->exposure_us;
-  const Result<capture::Metering> metering =
-      capture::meter(input, [&](int led, double exposure_us) -> Result<capture::Brightness> {
-        if (!devices_ || is_wanted()) return is_closed(rig_.name);
-        const Result<FrameFile> photograph = photograph_held(led, exposure_us, "meter");
-        if (!photograph) return photograph.error();
-        const Result<RawFrame> frame = capture::decode_raw(photograph->file);
-        std::error_code ignored;
-        fs::remove(photograph->file, ignored);
-        return frame ? Result<capture::Brightness>(capture::brightness_of(*frame)) : frame.error();
-      });
-  if (!metering) return std::nullopt;
-  metered_ = {shot.seen, metering->exposure_us};
-  return metering->exposure_us;
+  if (!devices_ || leds.empty()) return leds;
+  const Result<double> rest = light_held(leds, left_s);
+  return rest && *rest == 0 ? leds : std::vector<int>();
 }
 
 bool Attendance::is_wanted() const {
@@ -411,10 +324,7 @@ void Attendance::keep(TestShot shot) {
     const std::lock_guard lock(mutex_);
     is_shooting_ = false;
     changed_.notify_all();
-    shots_.back() = std::move(shot);
-    for (; shots_.size() > kKeptShots; shots_.pop_front()) {
-      if (shots_.front().frame) gone.push_back(shots_.front().frame->file);
-    }
+    gone = shots_.end(std::move(shot));
   }
   std::error_code ignored;
   for (const fs::path& file : gone) fs::remove(file, ignored);
@@ -422,23 +332,13 @@ void Attendance::keep(TestShot shot) {
 
 Result<TestShot> Attendance::shot(int id) const {
   const std::lock_guard lock(mutex_);
-  const auto found = std::ranges::find(shots_, id, &TestShot::id);
-  if (found != shots_.end()) return *found;
-  return Error{ErrorKind::kNoInput, "no such test shot", std::to_string(id),
-               fmt::format("the last {} are kept", kKeptShots), "take another one"};
+  return shots_.find(id);
 }
 
 Attendance::Status Attendance::status() const {
   const std::lock_guard lock(mutex_);
   Status status = status_;
-  if (!status.is_open) return status;
-  // What was lit since heats it, what was dark cools it, a second a second.
-  const double since_s = std::chrono::duration<double>(Clock::now() - felt_).count();
-  for (std::size_t i = 0; i < can_light_s_.size(); ++i) {
-    const bool is_lit = std::ranges::count(status.lit, static_cast<int>(i) + 1) > 0;
-    status.can_light_s.push_back(
-        std::clamp(can_light_s_[i] + (is_lit ? -since_s : since_s), 0.0, kMostLit_s));
-  }
+  if (status.is_open) status.can_light_s = heat_.can_light_s(status.lit, Clock::now());
   return status;
 }
 
@@ -450,7 +350,7 @@ Result<capture::RigDevices> Attendance::lend() {
   const std::lock_guard devices(devices_mutex_);
   if (status().is_live) end_look_held();
   Result<capture::RigDevices> lent =
-      devices_ ? Result<capture::RigDevices>(std::move(*devices_)) : open_(rig_);
+      devices_ ? Result<capture::RigDevices>(std::move(*devices_).release()) : open_(rig_);
   devices_.reset();
   const std::lock_guard lock(mutex_);
   is_lent_ = lent.has_value();
@@ -468,8 +368,7 @@ void Attendance::take_back(capture::RigDevices devices) {
     is_lent_ = false;
     status_.doing.clear();
     status_.is_open = Clock::now() < open_until_;
-    if (status_.is_open) devices_ = std::move(devices);
-    set_.reset();
+    if (status_.is_open) devices_.emplace(std::move(devices));
   }
   {
     const std::lock_guard held(devices_mutex_);
@@ -478,7 +377,6 @@ void Attendance::take_back(capture::RigDevices devices) {
   told_.changed();
 }
 
-// Ends leases.
 void Attendance::watch(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
@@ -502,52 +400,6 @@ void Attendance::watch(const std::stop_token& stop) {
     }
     lock.lock();
   }
-}
-
-namespace {
-
-Json number_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json();
-}
-
-Json to_json(const capture::FocusStanding& focus) {
-  Json scores = Json::array(), cells = Json::array();
-  for (const double score : focus.scores) scores.push_back(number_or_null(score));
-  for (const double cell : focus.relative) cells.push_back(number_or_null(cell));
-  return {{"scores", std::move(scores)},
-          {"best", focus.best},
-          {"columns", capture::FocusMap::kColumns},
-          {"relative", std::move(cells)},
-          {"more_right", focus.more_right ? Json(*focus.more_right) : Json()},
-          {"more_below", focus.more_below ? Json(*focus.more_below) : Json()}};
-}
-
-}  // namespace
-
-Json document_of(const TestShot& shot, FramePictures& pictures) {
-  Json document = {{"id", shot.id},
-                   {"led", shot.led},
-                   {"exposure_us", shot.exposure_us},
-                   {"state", shot.error   ? "failed"
-                             : shot.frame ? "taken"
-                                          : "taking"},
-                   {"width", shot.size.width},
-                   {"height", shot.size.height},
-                   {"suggested_us", shot.suggested_us ? Json(*shot.suggested_us) : Json()},
-                   {"clipped_rgb", Json()},
-                   {"histogram", Json()},
-                   {"focus", shot.focus ? to_json(*shot.focus) : Json()},
-                   {"error", shot.error ? json_of(*shot.error) : Json()}};
-  if (!shot.frame) return document;
-  const Result<Json> histogram = pictures.histogram(*shot.frame);
-  if (!histogram) {
-    document["error"] = json_of(histogram.error());
-    return document;
-  }
-  document["histogram"] = *histogram;
-  document["clipped_rgb"] = {(*histogram)["red"]["clipped"], (*histogram)["green"]["clipped"],
-                             (*histogram)["blue"]["clipped"]};
-  return document;
 }
 
 Json to_json(const Attendance::Status& status) {

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -13,29 +12,18 @@
 #include <thread>
 #include <vector>
 
-#include "app/server/rig/frame_pictures.h"
+#include "app/server/rig/attended_devices.h"
+#include "app/server/rig/lamp_heat.h"
+#include "app/server/rig/light_turns.h"
 #include "app/server/rig/screens.h"
-#include "capture/framing/focus.h"
+#include "app/server/rig/shot_reading.h"
+#include "app/server/rig/test_shots.h"
 #include "capture/rig.h"
 #include "capture/rig_devices/rig_devices.h"
-#include "capture/scan/light_fit.h"
-#include "capture/scan/meter.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 
 namespace weft::app {
-
-/// A photograph that a person looks at and nobody keeps.
-struct TestShot {
-  int id = 0;
-  int led = 0;                                  ///< 0: none was lit
-  double exposure_us = 0;                       ///< of the camera's own
-  std::optional<FrameFile> frame;               ///< once it is taken
-  Size size = {};                               ///< of that
-  std::optional<double> suggested_us;           ///< what the meter of a scan comes to; none without a LED
-  std::optional<capture::FocusStanding> focus;  ///< among those of its LED and exposure, one after another
-  std::optional<Error> error;                   ///< why it is not
-};
 
 /// The devices of a rig, held open while a person attends it: to see what each LED lights, to frame, to
 /// focus. They are open until kLease after the last call, and a scan takes them over as they are and gives
@@ -49,8 +37,6 @@ class Attendance {
  public:
   static constexpr std::chrono::minutes kLease{5};
   static constexpr std::chrono::milliseconds kLightLease{1500};
-  static constexpr std::chrono::seconds kTurn{3};
-  static constexpr std::size_t kKeptShots = 8;
   static constexpr std::chrono::seconds kLookLease{3};
 
   struct Status {
@@ -69,7 +55,7 @@ class Attendance {
     std::function<void(const TestShot&)> shot;  ///< was taken, or failed
   };
 
-  /// Test shots lie in `folder`, the last kKeptShots of them.
+  /// Test shots lie in `folder`, the last TestShots::kKept of them.
   Attendance(capture::Rig rig, capture::OpenDevices open, std::filesystem::path folder,
              const Screens& screens, Told told);
   ~Attendance();
@@ -87,8 +73,7 @@ class Attendance {
   /// Lights these LEDs (none: all off) until kLightLease from now. Errors: kTryAgain where the devices are
   /// closed or a scan has them, kUsage for LEDs that are not there, those of Lamps::light().
   Result<Lit> light(const std::vector<int>& leds);
-  /// Lights one LED for as long as somebody looks: after kTurn another one, that which may be lit longest.
-  /// The same errors.
+  /// Lights one LED for as long as somebody looks, in turns (LightTurns). The same errors.
   Result<Lit> light_in_turns();
   /// Begins a test shot by this LED (0: none) and gives its id. The light that was lit comes back after it.
   /// One that is full or too dark is followed by the meter's own, once in a series of like ones. Errors as
@@ -124,21 +109,25 @@ class Attendance {
 
  private:
   using Clock = std::chrono::steady_clock;
-  Result<void> open_held();
-  Result<double> light_held(const std::vector<int>& leds, double most_s);
-  void feel_heat_held();
-  void take(TestShot shot);
-  Result<FrameFile> photograph_held(int led, double exposure_us, const std::string& stem);
-  void look_at_held(TestShot& shot);
-  std::optional<double> suggested_held(const capture::MeteredShot& shot);
-  bool is_wanted() const;    ///< for a scan, or to end
-  void keep(TestShot shot);  ///< the next one may begin from here on
-  void fail_held(const Error& error);
-  void end_look_held();
-  void watch(const std::stop_token& stop);
-  void renew();
   template <typename Change>
   void change(const Change& change);
+  void renew();
+  bool is_wanted() const;  ///< for a scan, or to end
+  void watch(const std::stop_token& stop);
+
+  // With devices_mutex_ held.
+  Result<void> open_held();
+  void close_if_broken_held();
+  void feel_heat_held();
+  Result<double> light_held(const std::vector<int>& leds, double most_s);
+  std::vector<int> light_again_held();
+  void end_look_held();
+  Result<FrameFile> photograph_held(int led, double exposure_us, const std::string& stem);
+  Result<capture::Brightness> meter_shot_held(int led, double exposure_us);
+  void photograph_and_read_held(TestShot& shot);
+
+  void take(TestShot shot);
+  void keep(TestShot shot);  ///< the next one may begin from here on
 
   const capture::Rig rig_;
   const capture::OpenDevices open_;
@@ -146,40 +135,24 @@ class Attendance {
   const Screens& screens_;
   const Told told_;
 
-  std::mutex devices_mutex_;  ///< of the devices; held while one of them works
-  std::optional<capture::RigDevices> devices_;
-  std::optional<capture::ExposureSettings> set_;
-  Look look_;                                     ///< the last one
-  std::optional<capture::PhotositeNoise> noise_;  ///< by the rig's calibration
-  std::optional<capture::PatchLights> lights_;    ///< by that
-  capture::FocusSeries series_;
-  int series_led_ = -1;
-  double series_us_ = 0;
-  struct Metered {
-    capture::Brightness seen;  ///< of the test shot that did not tell
-    double exposure_us = 0;
-  };
-  std::optional<Metered> metered_;  ///< by the meter's own test shots, in this series
+  std::mutex devices_mutex_;  ///< of the three that follow; held while a device works
+  std::optional<AttendedDevices> devices_;
+  Look look_;  ///< the last one
+  ShotReader reader_;
 
-  mutable std::mutex mutex_;  ///< of all that follows; held for moments
+  mutable std::mutex mutex_;  ///< of all that follows; held for moments, devices_mutex_ before it
   std::condition_variable_any changed_;
   Status status_;
   bool is_lent_ = false, is_shooting_ = false, is_stopping_ = false;
   Clock::time_point open_until_, lit_until_, look_until_;
-  std::vector<int> wanted_;
-  int turn_ = 0;  ///< the LED whose turn it is, from turn_began_ on
-  Clock::time_point turn_began_;
-  std::vector<double> can_light_s_;  ///< at felt_
-  Clock::time_point felt_;
-  std::deque<TestShot> shots_;
-  int newest_ = 0;
-  std::jthread shooter_, watch_;
-};
+  std::vector<int> wanted_;  ///< to be lit until then
+  LightTurns turns_;
+  LampHeat heat_;
+  TestShots shots_;
+  std::jthread shooter_;
 
-/// {"id", "led", "exposure_us", "state" (taking, taken, failed), "width", "height", "suggested_us",
-/// "clipped_rgb", "histogram", "focus", "error"}: of one that is taken the histogram is counted now, if it is
-/// not yet.
-Json document_of(const TestShot& shot, FramePictures& pictures);
+  std::jthread watch_;  ///< ends leases, from begin to end
+};
 
 /// {"open", "doing", "lit", "error"}.
 Json to_json(const Attendance::Status& status);
