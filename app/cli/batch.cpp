@@ -127,12 +127,12 @@ struct PlanSums {
 
 PlanSums sums_of(const batch::Plan& plan) {
   PlanSums sums;
-  sums.error = batch::error_of(plan.jobs);
-  for (const batch::Job& job : plan.jobs) {
-    sums.hours += job.forecast.seconds / 3600;
-    sums.read_gb += static_cast<double>(job.read_bytes) * 1e-9;
-    sums.write_gb += static_cast<double>(job.write_bytes) * 1e-9;
-    sums.memory_bytes = std::max(sums.memory_bytes, job.memory_bytes);
+  sums.error = batch::error_of(plan.solves);
+  for (const batch::PlannedSolve& planned : plan.solves) {
+    sums.hours += planned.forecast.seconds / 3600;
+    sums.read_gb += static_cast<double>(planned.read_bytes) * 1e-9;
+    sums.write_gb += static_cast<double>(planned.write_bytes) * 1e-9;
+    sums.memory_bytes = std::max(sums.memory_bytes, planned.memory_bytes);
   }
   return sums;
 }
@@ -165,11 +165,11 @@ void print_plan(const PlanBatchReport& report) {
   if (!header.product.then.empty())
     print(fmt::format("  {} of each {} these hours", fmt::join(header.product.then, ", "),
                       header.sampled > 0 ? "are among" : "come on top of"));
-  for (const batch::Job& job : plan.jobs) {
-    if (job.forecast.solved < kLeastSolved)
+  for (const batch::PlannedSolve& planned : plan.solves) {
+    if (planned.forecast.solved < kLeastSolved)
       note(fmt::format("{}: only {} of its cloth will have a normal: scan it again",
-                       std::filesystem::path(job.session).stem().string(),
-                       share_in_words(job.forecast.solved)));
+                       std::filesystem::path(planned.session).stem().string(),
+                       share_in_words(planned.forecast.solved)));
   }
   print_left_out(plan);
   print(report.file.string());

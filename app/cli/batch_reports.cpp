@@ -56,7 +56,8 @@ void print_changes(const BatchState& state) {
     const batch::Row& row = state.rows[s.changed[i]];
     const batch::MapChange& change = *row.result->change;
     print(fmt::format("{:>6.3g} {:>6.3g} {:>+7.2f} %  {}  {}", change.mean_deg, change.p95_deg,
-                      100 * change.albedo_bias_rel, std::filesystem::path(row.job->session).stem().string(),
+                      100 * change.albedo_bias_rel,
+                      std::filesystem::path(row.planned->session).stem().string(),
                       fmt::join(batch::regressions(change), "; ")));
   }
 }

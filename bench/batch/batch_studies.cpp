@@ -86,13 +86,13 @@ namespace {
 
 constexpr int kOwn = 10, kSample = 10;
 
-batch::Outcome outcome_of(const batch::Plan& plan, const batch::Job& job, int number) {
+batch::Outcome outcome_of(const batch::Plan& plan, const batch::PlannedSolve& planned, int number) {
   batch::Outcome outcome;
   outcome.plan = plan.header.id;
-  outcome.session = job.session;
+  outcome.session = planned.session;
   outcome.state = batch::State::kSolved;
-  outcome.solve = job.solve;
-  outcome.folder = batch::solve_parent(plan.header, job.session) + "/" + job.solve;
+  outcome.solve = planned.solve;
+  outcome.folder = batch::solve_parent(plan.header, planned.session) + "/" + planned.solve;
   outcome.seconds = outcome.node_seconds = 5;
   outcome.sigma_deg = 0.6;
   outcome.left_out = 0.03 + 1e-6 * number;
@@ -137,30 +137,30 @@ Result<Rows> batch_merge(const StudyOptions& options) {
   batch::Plan plan;
   plan.header.archive = archive.string();
   for (int i = 0; i < sessions; ++i) {
-    batch::Job job;
-    job.session = session_in(archive, i).string();
-    job.digest = std::string(64, 'a');
-    job.quality = "standard";
-    job.solve = fmt::format("{:016x}", i);
-    job.before = "before";
-    job.rig = fmt::format("rig {}", i % 3);
-    job.calibration = fmt::format("calibration {}", i % 3);
-    job.megapixels = 16;
-    job.forecast.seconds = 6;
-    plan.jobs.push_back(std::move(job));
+    batch::PlannedSolve planned;
+    planned.session = session_in(archive, i).string();
+    planned.digest = std::string(64, 'a');
+    planned.quality = "standard";
+    planned.solve = fmt::format("{:016x}", i);
+    planned.before = "before";
+    planned.rig = fmt::format("rig {}", i % 3);
+    planned.calibration = fmt::format("calibration {}", i % 3);
+    planned.megapixels = 16;
+    planned.forecast.seconds = 6;
+    plan.solves.push_back(std::move(planned));
   }
-  batch::share_out(plan.jobs, 600);
+  batch::share_out(plan.solves, 600);
   if (const Result<void> written = app::write_plan(file, batch::text_of(plan)); !written)
     return written.error();
   const Result<app::PlanFile> opened = app::open_plan(file);
   if (!opened) return opened.error();
   fs::create_directories(opened->results());
   for (int i = 0; i < sessions; ++i) {
-    const batch::Job& job = plan.jobs[static_cast<std::size_t>(i)];
-    const batch::Outcome outcome = outcome_of(plan, job, i);
+    const batch::PlannedSolve& planned = plan.solves[static_cast<std::size_t>(i)];
+    const batch::Outcome outcome = outcome_of(plan, planned, i);
     fs::create_directories(outcome.folder);
     std::ofstream(fs::path(outcome.folder) / "solve.json") << "{}";
-    std::ofstream(opened->results_of(job.task), std::ios::app) << batch::line_of(outcome);
+    std::ofstream(opened->results_of(planned.task), std::ios::app) << batch::line_of(outcome);
   }
   Stopwatch watch;
   const Result<std::string> merged = run_weft({"batch", "merge", file.string(), "-q"});
@@ -224,7 +224,7 @@ Result<Rows> batch_kills(const StudyOptions& options, int kills) {
   if (!merged) return merged.error();
   int once = 0;
   for (const batch::Row& row : merged->state.rows) {
-    if (list_solves(row.job->session).size() == 1) ++once;
+    if (list_solves(row.planned->session).size() == 1) ++once;
   }
   const batch::Summary& summary = merged->state.summary;
   return Rows{{{"sessions", sessions},

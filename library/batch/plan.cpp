@@ -117,7 +117,7 @@ void describe(Fields& fields, Forecast& f) {
   fields.value({"solve_seconds", "Of the solve alone; since 1.1", {}, kUnlessEmpty}, f.solve_seconds);
 }
 
-void describe(Fields& fields, Job& j) {
+void describe(Fields& fields, PlannedSolve& j) {
   fields.value({"session", "Its folder", {}, kMustSay}, j.session);
   fields.value({"task", "From 0", {}, kMustSay}, j.task);
   fields.value({"quality", "Level", {}, kMustSay}, j.quality);
@@ -195,9 +195,9 @@ Json document_of(const Header& header) {
 
 }  // namespace
 
-MeanError error_of(std::span<const Job> jobs) {
+MeanError error_of(std::span<const PlannedSolve> solves) {
   MeanError error;
-  for (const Job& job : jobs) error.add(job.forecast.degrees, job.forecast.solved);
+  for (const PlannedSolve& planned : solves) error.add(planned.forecast.degrees, planned.forecast.solved);
   return error;
 }
 
@@ -207,15 +207,15 @@ std::string digest_of_session(Json document) {
   return sha256_of(document.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-void share_out(std::vector<Job>& jobs, double task_seconds) {
+void share_out(std::vector<PlannedSolve>& solves, double task_seconds) {
   int task = -1, sessions = 0;
   double seconds = 0;
-  for (Job& job : jobs) {
-    const bool is_full = seconds + job.forecast.seconds > task_seconds || sessions == kMostOfTask;
+  for (PlannedSolve& planned : solves) {
+    const bool is_full = seconds + planned.forecast.seconds > task_seconds || sessions == kMostOfTask;
     if (task < 0 || (sessions > 0 && is_full)) ++task, seconds = 0, sessions = 0;
-    seconds += job.forecast.seconds;
+    seconds += planned.forecast.seconds;
     ++sessions;
-    job.task = task;
+    planned.task = task;
   }
 }
 
@@ -223,18 +223,18 @@ std::string text_of(Plan& plan) {
   Header& header = plan.header;
   std::string lines;
   header.tasks.clear();
-  for (const Job& job : plan.jobs) {
-    if (static_cast<std::size_t>(job.task) == header.tasks.size()) header.tasks.push_back({lines.size()});
-    const std::string line = line_of(object_of(job));
+  for (const PlannedSolve& planned : plan.solves) {
+    if (static_cast<std::size_t>(planned.task) == header.tasks.size()) header.tasks.push_back({lines.size()});
+    const std::string line = line_of(object_of(planned));
     TaskPlace& task = header.tasks.back();
     task.bytes += line.size();
     task.sessions += 1;
-    task.seconds += job.forecast.seconds;
-    task.memory_bytes = std::max(task.memory_bytes, job.memory_bytes);
+    task.seconds += planned.forecast.seconds;
+    task.memory_bytes = std::max(task.memory_bytes, planned.memory_bytes);
     lines += line;
   }
   for (const LeftOut& left : plan.left_out) lines += line_of(object_of(left));
-  header.sessions = static_cast<int>(plan.jobs.size());
+  header.sessions = static_cast<int>(plan.solves.size());
   header.left_out = static_cast<int>(plan.left_out.size());
   header.id = id_of(document_of(header), lines);
   return line_of(document_of(header)) + lines;
@@ -252,20 +252,20 @@ Result<Header> header_from_line(std::string_view line, const std::string& where)
   return read_fields<Header>(json, where);
 }
 
-Result<std::vector<Job>> jobs_from_lines(std::string_view lines, const std::string& where) {
-  std::vector<Job> jobs;
+Result<std::vector<PlannedSolve>> solves_from_lines(std::string_view lines, const std::string& where) {
+  std::vector<PlannedSolve> solves;
   std::optional<Error> wrong;
   for_each_line(lines, [&](std::string_view line) {
     if (wrong) return;
-    Result<Job> job = from_line<Job>(line, where);
-    if (job) {
-      jobs.push_back(std::move(*job));
+    Result<PlannedSolve> planned = from_line<PlannedSolve>(line, where);
+    if (planned) {
+      solves.push_back(std::move(*planned));
     } else {
-      wrong = std::move(job).error();
+      wrong = std::move(planned).error();
     }
   });
   if (wrong) return *wrong;
-  return jobs;
+  return solves;
 }
 
 Result<Plan> plan_from_text(std::string_view text, const std::string& where) {
@@ -287,9 +287,9 @@ Result<Plan> plan_from_text(std::string_view text, const std::string& where) {
       if (left) plan.left_out.push_back(std::move(*left));
       return;
     }
-    Result<Job> job = read_fields<Job>(json, where);
-    if (!job) wrong = std::move(job).error();
-    if (job) plan.jobs.push_back(std::move(*job));
+    Result<PlannedSolve> planned = read_fields<PlannedSolve>(json, where);
+    if (!planned) wrong = std::move(planned).error();
+    if (planned) plan.solves.push_back(std::move(*planned));
   });
   if (wrong) return *wrong;
   return plan;

@@ -55,7 +55,7 @@ struct Forecast {
 };
 
 /// One session that is solved.
-struct Job {
+struct PlannedSolve {
   std::string session;  ///< its folder
   std::string digest;   ///< digest_of_session()
   int task = 0;
@@ -68,7 +68,7 @@ struct Job {
   Forecast forecast;
   std::uint64_t memory_bytes = 0, read_bytes = 0, write_bytes = 0;
 
-  friend bool operator==(const Job&, const Job&) = default;
+  friend bool operator==(const PlannedSolve&, const PlannedSolve&) = default;
 };
 
 /// Why a session is not solved.
@@ -97,7 +97,7 @@ class MeanError {
   int cloths_ = 0;
 };
 /// As it is planned.
-MeanError error_of(std::span<const Job> jobs);
+MeanError error_of(std::span<const PlannedSolve> solves);
 
 /// All sessions at one level.
 struct LevelTotal {
@@ -147,13 +147,13 @@ struct Header {
 
 struct Plan {
   Header header;
-  std::vector<Job> jobs;  ///< by task
+  std::vector<PlannedSolve> solves;  ///< by task
   std::vector<LeftOut> left_out;
 
   friend bool operator==(const Plan&, const Plan&) = default;
 };
 
-void describe(Fields& fields, Job& job);
+void describe(Fields& fields, PlannedSolve& planned);
 void describe(Fields& fields, LeftOut& left_out);
 void describe(Fields& fields, Header& header);
 
@@ -164,18 +164,18 @@ std::string digest_of_session(Json document);
 /// A task has at most so many sessions, where seconds are few or not known.
 inline constexpr int kMostOfTask = 100;
 
-/// Gives jobs to tasks of about so many seconds, in their order; a task has at least one.
-void share_out(std::vector<Job>& jobs, double task_seconds);
+/// Gives solves to tasks of about so many seconds, in their order; a task has at least one.
+void share_out(std::vector<PlannedSolve>& solves, double task_seconds);
 
-/// The text of a plan whose jobs have their tasks, which rise from 0 by one; fills the header's id, tasks and
-/// counts.
+/// The text of a plan whose solves have their tasks, which rise from 0 by one; fills the header's id, tasks
+/// and counts.
 std::string text_of(Plan& plan);
 
 /// Reads the first line. kBadData, `where` being the file's name for messages: no plan, or one of a newer
 /// version.
 Result<Header> header_from_line(std::string_view line, const std::string& where);
-/// Reads lines of jobs.
-Result<std::vector<Job>> jobs_from_lines(std::string_view lines, const std::string& where);
+/// Reads lines of solves.
+Result<std::vector<PlannedSolve>> solves_from_lines(std::string_view lines, const std::string& where);
 /// Reads all of it. kBadData also where lines are missing, or were changed since they were written.
 Result<Plan> plan_from_text(std::string_view text, const std::string& where);
 

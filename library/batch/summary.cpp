@@ -38,9 +38,9 @@ void count(const Row& row, Summary& summary) {
   }
   ++summary.solved;
   summary.error.add(outcome.expected_deg, outcome.solved_share());
-  summary.predicted_error.add(row.job->forecast.degrees, row.job->forecast.solved);
+  summary.predicted_error.add(row.planned->forecast.degrees, row.planned->forecast.solved);
   summary.seconds += outcome.node_seconds;
-  summary.predicted_seconds += row.job->forecast.seconds;
+  summary.predicted_seconds += row.planned->forecast.seconds;
   summary.peak_bytes = std::max(summary.peak_bytes, outcome.peak_bytes);
 }
 
@@ -57,7 +57,7 @@ std::vector<Cause> causes_of(std::span<const Row> rows) {
     cause.kind = kind;
     cause.what = what;
     ++cause.sessions;
-    if (cause.example.empty()) cause.example = error ? error->message() : what + ": " + row.job->session;
+    if (cause.example.empty()) cause.example = error ? error->message() : what + ": " + row.planned->session;
   }
   std::vector<Cause> causes;
   for (auto& [name, cause] : by_name) causes.push_back(std::move(cause));
@@ -84,9 +84,9 @@ std::vector<ByCalibration> by_calibration(std::span<const Row> rows) {
   for (const Row& row : rows) {
     if (!row.is_done()) continue;
     const Outcome& outcome = *row.result;
-    Gathered& of = gathered[row.job->calibration];
-    of.all.calibration = row.job->calibration;
-    of.all.rig = row.job->rig;
+    Gathered& of = gathered[row.planned->calibration];
+    of.all.calibration = row.planned->calibration;
+    of.all.rig = row.planned->rig;
     ++of.all.sessions;
     if (outcome.change && regression_weight(*outcome.change) > 0) ++of.all.worse;
     if (speaks_against_lights(outcome)) ++of.all.warned;
@@ -116,13 +116,13 @@ std::vector<ByCalibration> by_calibration(std::span<const Row> rows) {
 
 std::vector<Row> rows_of(const Plan& plan, const std::map<std::string, History>& histories) {
   std::vector<Row> rows;
-  rows.reserve(plan.jobs.size());
-  for (const Job& job : plan.jobs) {
-    const auto found = histories.find(job.session);
+  rows.reserve(plan.solves.size());
+  for (const PlannedSolve& planned : plan.solves) {
+    const auto found = histories.find(planned.session);
     if (found == histories.end()) {
-      rows.push_back({&job});
+      rows.push_back({&planned});
     } else {
-      rows.push_back({&job, found->second.result, found->second.lost, found->second.attempts});
+      rows.push_back({&planned, found->second.result, found->second.lost, found->second.attempts});
     }
   }
   return rows;
@@ -134,7 +134,7 @@ Summary summarize(std::span<const Row> rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
     count(row, summary);
-    if (row.is_missing()) missing.insert(row.job->task);
+    if (row.is_missing()) missing.insert(row.planned->task);
     if (row.is_done() && row.result->solved_share() < kLeastSolved) summary.barely_solved.push_back(i);
     if (row.is_done() && !row.result->warnings.empty()) summary.warned.push_back(i);
     if (!row.is_done() || !row.result->change) continue;
@@ -171,7 +171,7 @@ void describe(Fields& fields, ByCalibration& c) {
 
 namespace {
 
-void describe_done(Fields& fields, Job& job, Outcome& o) {
+void describe_done(Fields& fields, PlannedSolve& planned, Outcome& o) {
   double solved = o.solved_share();
   fields.value({"solve", "Its id"}, o.solve);
   fields.value({"folder", "Where it is"}, o.folder);
@@ -180,7 +180,7 @@ void describe_done(Fields& fields, Job& job, Outcome& o) {
   fields.value({"sigma_deg", "Median angle that sigma.exr predicts, degrees"}, o.sigma_deg);
   fields.value({"solved", "Share of the cloth that has a normal"}, solved);
   fields.value({"warnings", "By name"}, o.warnings);
-  fields.value({"before", "Id of the solve that it is compared with; empty: none"}, job.before);
+  fields.value({"before", "Id of the solve that it is compared with; empty: none"}, planned.before);
   fields.object({"change", "From the solve before", {}, kUnlessEmpty}, o.change);
   fields.only_if(o.change.has_value(), [&] {
     std::vector<std::string> worse = o.change ? regressions(*o.change) : std::vector<std::string>();
@@ -192,29 +192,29 @@ void describe_done(Fields& fields, Job& job, Outcome& o) {
 }  // namespace
 
 void describe(Fields& fields, Row& row) {
-  Job job = row.job != nullptr ? *row.job : Job();
+  PlannedSolve planned = row.planned != nullptr ? *row.planned : PlannedSolve();
   Outcome outcome = row.result.value_or(row.lost.value_or(Outcome()));
   std::string state = row.result ? kStateNames[static_cast<std::size_t>(row.result->state)] : "missing";
-  fields.value({"session", "Its folder"}, job.session);
-  fields.value({"task", "From 0"}, job.task);
-  fields.value({"quality", "Level"}, job.quality);
-  fields.value({"calibration", "Its id"}, job.calibration);
+  fields.value({"session", "Its folder"}, planned.session);
+  fields.value({"task", "From 0"}, planned.task);
+  fields.value({"quality", "Level"}, planned.quality);
+  fields.value({"calibration", "Its id"}, planned.calibration);
   fields.value(
       {.name = "state", .says = "What became of it", .words = {"solved", "there", "failed", "missing"}},
       state);
   fields.value({"attempts", "So far"}, row.attempts);
-  fields.value({"predicted_seconds", "By the plan"}, job.forecast.seconds);
-  fields.value({"predicted_deg", "By the plan, degrees"}, job.forecast.degrees);
-  fields.value({"predicted_solved", "By the plan, a share"}, job.forecast.solved);
+  fields.value({"predicted_seconds", "By the plan"}, planned.forecast.seconds);
+  fields.value({"predicted_deg", "By the plan, degrees"}, planned.forecast.degrees);
+  fields.value({"predicted_solved", "By the plan, a share"}, planned.forecast.solved);
   fields.object({"error", "Why it failed, or its last attempt was lost", {}, kUnlessEmpty}, outcome.error);
-  fields.only_if(row.is_done(), [&] { describe_done(fields, job, outcome); });
+  fields.only_if(row.is_done(), [&] { describe_done(fields, planned, outcome); });
 }
 
 void describe(Fields& fields, SummaryDocument& document) {
   auto& [s, rows] = document;
   const auto names_of = [&rows = rows](const std::vector<std::size_t>& some) {
     std::vector<std::string> names;
-    for (const std::size_t i : some) names.push_back(rows[i].job->session);
+    for (const std::size_t i : some) names.push_back(rows[i].planned->session);
     return names;
   };
   double ratio = s.seconds_ratio(), deg = s.error.degrees(), solved = s.error.solved(),

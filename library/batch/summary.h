@@ -18,7 +18,7 @@ namespace weft::batch {
 
 /// A session of the plan and what became of it. Neither solved nor failed: missing.
 struct Row {
-  const Job* job = nullptr;
+  const PlannedSolve* planned = nullptr;
   std::optional<Outcome> result = {};  ///< of kSolved, kThere or kFailed
   std::optional<Outcome> lost = {};    ///< why the last attempt after it was none
   int attempts = 0;

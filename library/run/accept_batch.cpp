@@ -28,7 +28,7 @@ bool is_named(const std::string& session, const std::vector<std::string>& names)
 Result<void> check_names(const BatchState& state, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const bool is_there = std::ranges::any_of(
-        state.rows, [&](const batch::Row& row) { return is_named(row.job->session, {name}); });
+        state.rows, [&](const batch::Row& row) { return is_named(row.planned->session, {name}); });
     if (!is_there)
       return Error{ErrorKind::kUsage, "no such session", name, "the plan has none of this name",
                    "weft batch merge lists them"};
@@ -37,7 +37,7 @@ Result<void> check_names(const BatchState& state, const std::vector<std::string>
 }
 
 Accepted accept_one(const batch::Row& row, const AcceptBatchOptions& options) {
-  Accepted accepted = {row.job->session, row.job->solve, row.job->before, false, ""};
+  Accepted accepted = {row.planned->session, row.planned->solve, row.planned->before, false, ""};
   if (!row.is_done()) {
     accepted.why = "it is not solved";
     return accepted;
@@ -48,7 +48,7 @@ Accepted accept_one(const batch::Row& row, const AcceptBatchOptions& options) {
     if (!worse.empty()) accepted.why = fmt::format("it became worse: {}", fmt::join(worse, "; "));
     if (!worse.empty()) return accepted;
   }
-  const Result<Session> session = read_session(row.job->session);
+  const Result<Session> session = read_session(row.planned->session);
   if (!session) {
     accepted.why = session.error().message();
     return accepted;
@@ -60,14 +60,14 @@ Accepted accept_one(const batch::Row& row, const AcceptBatchOptions& options) {
     accepted.why = "it is the current one already";
     return accepted;
   }
-  if (!is_current && current != nullptr && current->id != row.job->before) {
+  if (!is_current && current != nullptr && current->id != row.planned->before) {
     accepted.why = fmt::format("its current solve is {} since the plan", current->id);
     return accepted;
   }
   accepted.is_moved = true;
   if (options.dry_run) return accepted;
   const Result<library::MetadataChange> changed =
-      library::change_metadata(row.job->session, {{"current_solve", accepted.solve}});
+      library::change_metadata(row.planned->session, {{"current_solve", accepted.solve}});
   if (changed) return accepted;
   accepted.is_moved = false;
   accepted.why = changed.error().message();
@@ -89,7 +89,7 @@ Result<std::vector<Accepted>> accept_batch(const AcceptBatchOptions& options) {
   if (Result<void> ok = check_names(*state, options.sessions); !ok) return std::move(ok).error();
   std::vector<Accepted> all;
   for (const batch::Row& row : state->rows) {
-    if (options.sessions.empty() || is_named(row.job->session, options.sessions))
+    if (options.sessions.empty() || is_named(row.planned->session, options.sessions))
       all.push_back(accept_one(row, options));
   }
   return all;
@@ -101,13 +101,14 @@ Result<std::vector<Freed>> prune_batch(const fs::path& plan, int keep, bool yes)
   std::vector<Freed> freed;
   for (const batch::Row& row : state->rows) {
     if (!row.is_done()) continue;
-    const Result<Session> session = read_session(row.job->session);
+    const Result<Session> session = read_session(row.planned->session);
     if (!session || library::current_solve(*session) != row.result->solve) continue;
-    const Result<std::vector<library::Prunable>> solves = library::prunable(row.job->session, keep);
+    const Result<std::vector<library::Prunable>> solves = library::prunable(row.planned->session, keep);
     if (!solves) return solves.error();
-    for (const library::Prunable& each : *solves) freed.push_back({row.job->session, each.solve, each.bytes});
+    for (const library::Prunable& each : *solves)
+      freed.push_back({row.planned->session, each.solve, each.bytes});
     if (!yes || solves->empty()) continue;
-    if (Result<void> ok = library::prune(row.job->session, *solves); !ok) return std::move(ok).error();
+    if (Result<void> ok = library::prune(row.planned->session, *solves); !ok) return std::move(ok).error();
   }
   return freed;
 }

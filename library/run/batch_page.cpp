@@ -29,9 +29,10 @@ std::string number(const std::optional<double>& value, const char* format = "{:.
 }
 
 // As people call it, and by its session.
-std::string cloth_in(const batch::Job& job) {
-  const std::string name = name_in(job.session);
-  return job.fabric.empty() || job.fabric == name ? name : fmt::format("{}, {}", job.fabric, name);
+std::string cloth_in(const batch::PlannedSolve& planned) {
+  const std::string name = name_in(planned.session);
+  return planned.fabric.empty() || planned.fabric == name ? name
+                                                          : fmt::format("{}, {}", planned.fabric, name);
 }
 
 std::string sessions_in_words(int count) {
@@ -114,7 +115,7 @@ std::vector<std::string> row_of_change(const Row& row) {
   const auto pair = [](const std::optional<batch::BeforeAfter>& p) {
     return p ? fmt::format("{:.3g} → {:.3g}", p->before, p->after) : std::string();
   };
-  return {cloth_in(*row.job),
+  return {cloth_in(*row.planned),
           fmt::format("{:.3g}", change.mean_deg),
           fmt::format("{:.3g}", change.p95_deg),
           fmt::format("{:.3g}", change.max_deg),
@@ -198,7 +199,7 @@ std::vector<Verdict> verdicts_of(const BatchState& state) {
   if (!s.barely_solved.empty()) {
     std::vector<std::string> named;
     for (const std::size_t i : s.barely_solved)
-      named.push_back(fmt::format("{} ({})", name_in(state.rows[i].job->session),
+      named.push_back(fmt::format("{} ({})", name_in(state.rows[i].planned->session),
                                   share_in_words(state.rows[i].result->solved_share())));
     verdicts.push_back(
         {"BARELY_SOLVED",

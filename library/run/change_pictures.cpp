@@ -68,8 +68,8 @@ Image<float> angles_between(const Image<float>& before, const Image<float>& afte
 
 }  // namespace
 
-Result<std::string> draw_change(const fs::path& before, const fs::path& after, const batch::Job& job,
-                                const batch::MapChange& change) {
+Result<std::string> draw_change(const fs::path& before, const fs::path& after,
+                                const batch::PlannedSolve& planned, const batch::MapChange& change) {
   const std::array<std::string, 3> xyz = {"X", "Y", "Z"}, rgb = {"R", "G", "B"};
   const Result<Image<float>> old = part_of(before / "normal.exr", xyz, change.worst);
   if (!old) return old.error();
@@ -85,14 +85,14 @@ Result<std::string> draw_change(const fs::path& before, const fs::path& after, c
   const double scale = report::round_full_scale(angles.plane());
   const double brightness = report::display_scale(*albedo);
   std::vector<report::Panel> panels;
-  panels.push_back({"before", job.before, enlarge(report::normal_picture(*old))});
-  panels.push_back({"after", job.solve, enlarge(report::normal_picture(*now))});
+  panels.push_back({"before", planned.before, enlarge(report::normal_picture(*old))});
+  panels.push_back({"after", planned.solve, enlarge(report::normal_picture(*now))});
   panels.push_back({"after, relit", "", enlarge(report::relit_picture(*albedo, *now, brightness))});
   panels.push_back({"change", fmt::format("{:.3g}° in the window", change.worst.mean_deg),
                     enlarge(report::heat_picture(angles.plane(), scale))});
-  const std::string title =
-      fmt::format("{}  mean {:.3g}°, 95 % under {:.3g}°  at {}, {}", fs::path(job.session).stem().string(),
-                  change.mean_deg, change.p95_deg, change.worst.x, change.worst.y);
+  const std::string title = fmt::format("{}  mean {:.3g}°, 95 % under {:.3g}°  at {}, {}",
+                                        fs::path(planned.session).stem().string(), change.mean_deg,
+                                        change.p95_deg, change.worst.x, change.worst.y);
   return png_of(report::contact_sheet(title, panels, static_cast<int>(panels.size())));
 }
 

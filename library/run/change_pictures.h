@@ -20,6 +20,6 @@ struct DrawnChange {
 /// The worst window of two solves side by side, as the bytes of a PNG: the old normals, the new ones, the new
 /// cloth relit, and a map of the angle between them with its scale. Errors of reading maps.
 Result<std::string> draw_change(const std::filesystem::path& before, const std::filesystem::path& after,
-                                const batch::Job& job, const batch::MapChange& change);
+                                const batch::PlannedSolve& planned, const batch::MapChange& change);
 
 }  // namespace weft::app

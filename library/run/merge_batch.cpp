@@ -25,13 +25,13 @@ std::string picture_name(std::size_t number) {
   return fmt::format("worst-{:02}.png", number);
 }
 
-fs::path solves_of(const batch::Plan& plan, const batch::Job& job) {
-  return batch::solve_parent(plan.header, job.session);
+fs::path solves_of(const batch::Plan& plan, const batch::PlannedSolve& planned) {
+  return batch::solve_parent(plan.header, planned.session);
 }
 
 // A solve that nobody wrote down: its process was killed in between.
-std::optional<batch::Outcome> unwritten(const batch::Plan& plan, const batch::Job& job) {
-  const fs::path folder = solves_of(plan, job) / job.solve;
+std::optional<batch::Outcome> unwritten(const batch::Plan& plan, const batch::PlannedSolve& planned) {
+  const fs::path folder = solves_of(plan, planned) / planned.solve;
   const fs::path document = folder / kSolveProduct.document;
   if (!is_there(document)) return {};
   const Result<Json> json = read_json(document, kSolveProduct.schema, 1);
@@ -40,9 +40,9 @@ std::optional<batch::Outcome> unwritten(const batch::Plan& plan, const batch::Jo
   if (!facts) return {};
   batch::Outcome outcome;
   outcome.plan = plan.header.id;
-  outcome.session = job.session;
+  outcome.session = planned.session;
   outcome.state = batch::State::kThere;
-  outcome.solve = job.solve;
+  outcome.solve = planned.solve;
   outcome.folder = folder.string();
   outcome.no_change = "its process was killed before it compared them: run the same command again";
   if (facts->taken) outcome.solved = facts->taken->solved;
@@ -59,7 +59,7 @@ void hold_against_folders(const batch::Plan& plan, batch::Row& row) {
                        "run the same command again"};
     row.result.reset();
   }
-  if (row.is_missing()) row.result = unwritten(plan, *row.job);
+  if (row.is_missing()) row.result = unwritten(plan, *row.planned);
 }
 
 Result<void> write_pictures(const BatchState& state, const fs::path& folder, std::vector<DrawnChange>& drawn,
@@ -72,13 +72,13 @@ Result<void> write_pictures(const BatchState& state, const fs::path& folder, std
     if (drawn.size() == kMostDrawn || context.stop.stop_requested()) break;
     const batch::Row& row = state.rows[index];
     if (row.result->change->is_none() || row.result->is_stored) continue;
-    const fs::path before = fs::path(row.job->session) / "solve" / row.job->before;
-    Result<std::string> png = draw_change(before, row.result->folder, *row.job, *row.result->change);
+    const fs::path before = fs::path(row.planned->session) / "solve" / row.planned->before;
+    Result<std::string> png = draw_change(before, row.result->folder, *row.planned, *row.result->change);
     // A solve that went since then leaves no picture, and its numbers stay.
     if (!png) continue;
     const std::string name = picture_name(drawn.size() + 1);
     if (Result<void> written = write_file(folder / name, *png); !written) return written;
-    drawn.push_back({row.job->session, name, std::move(*png)});
+    drawn.push_back({row.planned->session, name, std::move(*png)});
     context.progress("draw", static_cast<double>(drawn.size()) / kMostDrawn);
   }
   return {};
@@ -128,7 +128,8 @@ Result<MergeReport> merge_batch(const fs::path& plan, const JobContext& context)
   if (!state) return std::move(state).error();
   MergeReport report;
   for (const batch::Row& row : state->rows)
-    report.abandoned += remove_folders(abandoned_of(row.job->session, solves_of(state->plan, *row.job)));
+    report.abandoned +=
+        remove_folders(abandoned_of(row.planned->session, solves_of(state->plan, *row.planned)));
   report.folder = state->file.results() / "report";
   if (Result<void> made = make_writable_folder(report.folder); !made) return std::move(made).error();
   std::vector<DrawnChange> drawn;

@@ -17,7 +17,7 @@ namespace weft::app {
 struct BatchState {
   PlanFile file;
   batch::Plan plan;
-  std::vector<batch::Row> rows;  ///< of plan.jobs
+  std::vector<batch::Row> rows;  ///< of plan.solves
   batch::Summary summary;
 
   BatchState() = default;

@@ -74,7 +74,7 @@ class Planning {
     plan_.header.sample_seconds = watch.lap();
     if (Result<void> ok = decide(); !ok) return std::move(ok).error();
     add_totals();
-    batch::share_out(plan_.jobs, 60 * options_.task_minutes);
+    batch::share_out(plan_.solves, 60 * options_.task_minutes);
     const std::string text = batch::text_of(plan_);
     if (const Result<void> written = write_plan(options_.plan, text); !written) return written.error();
     seconds += watch.lap();
@@ -317,22 +317,22 @@ class Planning {
                                 forecast.seconds});
       return;
     }
-    batch::Job job;
-    job.session = session;
-    job.digest = candidate.digest;
-    job.quality = level_names()[levels_[level]];
-    job.calibration = candidate.traits.calibration;
-    job.solve = of_level.solve;
-    job.before = candidate.before;
-    job.rig = candidate.rig;
-    job.fabric = candidate.traits.fabric;
-    job.megapixels = candidate.traits.megapixels;
-    job.forecast = forecast;
+    batch::PlannedSolve planned;
+    planned.session = session;
+    planned.digest = candidate.digest;
+    planned.quality = level_names()[levels_[level]];
+    planned.calibration = candidate.traits.calibration;
+    planned.solve = of_level.solve;
+    planned.before = candidate.before;
+    planned.rig = candidate.rig;
+    planned.fabric = candidate.traits.fabric;
+    planned.megapixels = candidate.traits.megapixels;
+    planned.forecast = forecast;
     const FollowUpPrice follows = follow_up_of(i, level);
-    job.memory_bytes = std::max(of_level.memory_bytes, with_room(follows.memory_bytes));
-    job.read_bytes = candidate.read_bytes;
-    job.write_bytes = of_level.write_bytes + follows.write_bytes;
-    plan_.jobs.push_back(std::move(job));
+    planned.memory_bytes = std::max(of_level.memory_bytes, with_room(follows.memory_bytes));
+    planned.read_bytes = candidate.read_bytes;
+    planned.write_bytes = of_level.write_bytes + follows.write_bytes;
+    plan_.solves.push_back(std::move(planned));
   }
 
   // All sessions at each level, so that the price of each is known before one is paid.
@@ -350,7 +350,8 @@ class Planning {
       total.mean_deg = error.degrees();
       total.solved = error.solved();
       total.spread_deg = std::sqrt(std::max(0.0, squares.degrees() - total.mean_deg * total.mean_deg));
-      total.sessions = static_cast<int>(std::ranges::count(plan_.jobs, total.quality, &batch::Job::quality));
+      total.sessions =
+          static_cast<int>(std::ranges::count(plan_.solves, total.quality, &batch::PlannedSolve::quality));
       plan_.header.levels.push_back(total);
     }
   }

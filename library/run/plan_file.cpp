@@ -73,7 +73,7 @@ Result<PlanFile> open_plan(const fs::path& file) {
   return PlanFile{absolute_folder(file), std::move(*header), line->size() + 1};
 }
 
-Result<std::vector<batch::Job>> read_task(const PlanFile& plan, int task) {
+Result<std::vector<batch::PlannedSolve>> read_task(const PlanFile& plan, int task) {
   const auto& tasks = plan.header.tasks;
   if (task < 0 || static_cast<std::size_t>(task) >= tasks.size()) {
     return Error{ErrorKind::kUsage, "no such task", fmt::format("--task {}", task),
@@ -84,11 +84,12 @@ Result<std::vector<batch::Job>> read_task(const PlanFile& plan, int task) {
   const batch::TaskPlace& place = tasks[static_cast<std::size_t>(task)];
   const Result<std::string> lines = read_part(plan.file, plan.lines_at + place.offset, place.bytes);
   if (!lines) return lines.error();
-  Result<std::vector<batch::Job>> jobs = batch::jobs_from_lines(*lines, plan.file.string());
-  if (!jobs) return jobs;
-  const bool fits = static_cast<int>(jobs->size()) == place.sessions &&
-                    std::ranges::all_of(*jobs, [&](const batch::Job& job) { return job.task == task; });
-  if (fits) return jobs;
+  Result<std::vector<batch::PlannedSolve>> solves = batch::solves_from_lines(*lines, plan.file.string());
+  if (!solves) return solves;
+  const bool fits =
+      static_cast<int>(solves->size()) == place.sessions &&
+      std::ranges::all_of(*solves, [&](const batch::PlannedSolve& planned) { return planned.task == task; });
+  if (fits) return solves;
   return Error{ErrorKind::kBadData, "plan cannot be used", plan.file.string(),
                fmt::format("its lines of task {} are not where its first line says", task),
                "make it again with weft batch plan"};

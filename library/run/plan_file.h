@@ -27,7 +27,7 @@ struct PlanFile {
 /// Reads the header alone. kNoInput, kBadData.
 Result<PlanFile> open_plan(const std::filesystem::path& file);
 /// Reads the lines of one task alone. kUsage where there is no such task, kBadData.
-Result<std::vector<batch::Job>> read_task(const PlanFile& plan, int task);
+Result<std::vector<batch::PlannedSolve>> read_task(const PlanFile& plan, int task);
 /// Reads all of it, checked against its id.
 Result<batch::Plan> read_plan(const std::filesystem::path& file);
 /// Writes a plan, or finds the same there. A plan never changes: kCannotCreate where another is there.

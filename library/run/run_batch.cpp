@@ -49,7 +49,7 @@ struct Active {
 
 // A session under way.
 struct Item {
-  batch::Job job;
+  batch::PlannedSolve planned;
   int attempt = 1;
   bool is_here = false;  // it can be solved
   bool is_read_ahead = false;
@@ -130,16 +130,16 @@ class BatchRun {
     const Result<std::map<std::string, batch::History>> histories = read_histories(plan_, tasks);
     if (!histories) return histories.error();
     for (const int task : tasks) {
-      Result<std::vector<batch::Job>> jobs = read_task(plan_, task);
-      if (!jobs) return std::move(jobs).error();
-      for (batch::Job& job : *jobs) add_item(std::move(job), *histories);
+      Result<std::vector<batch::PlannedSolve>> solves = read_task(plan_, task);
+      if (!solves) return std::move(solves).error();
+      for (batch::PlannedSolve& planned : *solves) add_item(std::move(planned), *histories);
     }
     return {};
   }
 
-  void add_item(batch::Job job, const std::map<std::string, batch::History>& histories) {
+  void add_item(batch::PlannedSolve planned, const std::map<std::string, batch::History>& histories) {
     Item item;
-    const auto found = histories.find(job.session);
+    const auto found = histories.find(planned.session);
     if (found != histories.end()) {
       const batch::History& history = found->second;
       item.attempt = history.attempts + 1;
@@ -155,10 +155,10 @@ class BatchRun {
       }
     }
     // With other maps kept than planned it is another solve.
-    if (plan_.header.product.is_whole()) job.solve = lean_id(job.solve, product_);
-    seconds_to_do_ += job.forecast.seconds;
-    seconds_in_all_ += job.forecast.seconds;
-    item.job = std::move(job);
+    if (plan_.header.product.is_whole()) planned.solve = lean_id(planned.solve, product_);
+    seconds_to_do_ += planned.forecast.seconds;
+    seconds_in_all_ += planned.forecast.seconds;
+    item.planned = std::move(planned);
     item.is_here = options_.fetch.empty();
     items_.push_back(std::move(item));
   }
@@ -205,7 +205,7 @@ class BatchRun {
     }
     const bool has_next = next_solve_ < items_.size() && options_.fetch.empty();
     if (has_next && !items_[next_solve_].is_read_ahead && count(Stage::kReadAhead) == 0 &&
-        static_cast<double>(items_[next_solve_].job.read_bytes) <
+        static_cast<double>(items_[next_solve_].planned.read_bytes) <
             kShareOfMemory * static_cast<double>(available_memory_bytes())) {
       items_[next_solve_].is_read_ahead = true;
       return start(Stage::kReadAhead, next_solve_);
@@ -214,18 +214,18 @@ class BatchRun {
   }
 
   fs::path folder_of(const Item& item) const {
-    return item.fetched.empty() ? fs::path(item.job.session) : item.fetched;
+    return item.fetched.empty() ? fs::path(item.planned.session) : item.fetched;
   }
 
   SessionWork work_of(const Item& item) const {
     SessionWork work;
     work.header = &plan_.header;
-    work.job = item.job;
+    work.planned = item.planned;
     work.product = product_;
     work.session = folder_of(item);
     const bool is_fetched = !item.fetched.empty() && plan_.header.output.empty();
-    work.solves =
-        is_fetched ? item.fetched / "solve" : fs::path(batch::solve_parent(plan_.header, item.job.session));
+    work.solves = is_fetched ? item.fetched / "solve"
+                             : fs::path(batch::solve_parent(plan_.header, item.planned.session));
     return work;
   }
 
@@ -233,23 +233,24 @@ class BatchRun {
     Item& item = items_[index];
     std::function<std::string(std::stop_token)> work;
     if (stage == Stage::kFetch) {
-      const fs::path to = scratch_ / std::to_string(index) / fs::path(item.job.session).filename();
+      const fs::path to = scratch_ / std::to_string(index) / fs::path(item.planned.session).filename();
       if (Result<void> made = make_writable_folder(to.parent_path()); !made) return made;
       item.fetched = to;
       work = [this, &item, to](const std::stop_token&) {
-        return run_outside(options_.fetch, item.job.session, to.string());
+        return run_outside(options_.fetch, item.planned.session, to.string());
       };
     } else if (stage == Stage::kSolve) {
       work = [this, &item](const std::stop_token& stop) {
         return batch::line_of(work_on_session(work_of(item), {threads(), stop}));
       };
     } else if (stage == Stage::kStore) {
-      const std::string to = batch::solve_parent(plan_.header, item.job.session) + "/" + item.solved->solve;
+      const std::string to =
+          batch::solve_parent(plan_.header, item.planned.session) + "/" + item.solved->solve;
       work = [this, &item, to](const std::stop_token&) {
         return store_outside(options_.store, item.solved->folder, to);
       };
     } else {
-      const fs::path session = item.job.session;
+      const fs::path session = item.planned.session;
       work = [session](const std::stop_token& stop) { return read_ahead(session, stop); };
     }
     Result<std::unique_ptr<ForkedWork>> started =
@@ -288,7 +289,7 @@ class BatchRun {
         if (end.signal == 0 && end.code == 0 && end.said.empty()) {
           batch::Outcome outcome = std::move(*item.solved);
           outcome.is_stored = true;
-          outcome.folder = batch::solve_parent(plan_.header, item.job.session) + "/" + outcome.solve;
+          outcome.folder = batch::solve_parent(plan_.header, item.planned.session) + "/" + outcome.solve;
           return finish(over.item, std::move(outcome));
         }
         return finish(over.item, ended_by(work_of(item), cannot_be(end, "solve cannot be stored", item)));
@@ -298,7 +299,7 @@ class BatchRun {
   }
 
   static Error cannot_be(const ForkedEnd& end, const char* what, const Item& item) {
-    return {ErrorKind::kTryAgain, what, item.job.session,
+    return {ErrorKind::kTryAgain, what, item.planned.session,
             end.signal != 0 ? fmt::format("its command was ended by signal {}", end.signal) : end.said,
             "look at the command, then run the same command again"};
   }
@@ -325,14 +326,14 @@ class BatchRun {
     const std::string limit =
         options_.memory_bytes() > 0 ? fmt::format("it may hold {} MB", options_.memory_bytes() >> 20) : "";
     if (end.code == ForkedWork::kOutOfMemory)
-      return {ErrorKind::kTryAgain, "out of memory", item.job.session, limit,
+      return {ErrorKind::kTryAgain, "out of memory", item.planned.session, limit,
               "run it with more --memory, or on a larger machine"};
     if (end.signal != 0)
-      return {ErrorKind::kTryAgain, "its process was killed", item.job.session,
+      return {ErrorKind::kTryAgain, "its process was killed", item.planned.session,
               fmt::format("signal {}{}", end.signal,
                           end.signal == SIGKILL ? ": the system was perhaps out of memory" : ""),
               "run the same command again"};
-    return {ErrorKind::kInternal, "a bug in weft", item.job.session, end.said,
+    return {ErrorKind::kInternal, "a bug in weft", item.planned.session, end.said,
             "report it with the command you ran"};
   }
 
@@ -342,16 +343,16 @@ class BatchRun {
     outcome.attempt = item.attempt;
     outcome.host = machine_name();
     item.is_over = true;
-    if (Result<void> ok = add_outcome(plan_, item.job.task, outcome); !ok) return ok;
+    if (Result<void> ok = add_outcome(plan_, item.planned.task, outcome); !ok) return ok;
     if (!item.fetched.empty()) {
       std::error_code ignored;
       fs::remove_all(item.fetched.parent_path(), ignored);
     }
     ++done_;
-    seconds_to_do_ -= item.job.forecast.seconds;
+    seconds_to_do_ -= item.planned.forecast.seconds;
     if (outcome.state == batch::State::kSolved) {
       seconds_taken_ += outcome.node_seconds;
-      seconds_foreseen_ += item.job.forecast.seconds;
+      seconds_foreseen_ += item.planned.forecast.seconds;
     }
     tally(outcome);
     context_.progress("batch", share_done());

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 // The calibration that it is solved by, in place of its own; refuses what is not as planned.
 Result<fs::path> check_session(const SessionWork& work) {
   const fs::path& folder = work.session;
-  if (folder == work.job.session && !is_there(work.header->archive)) {
+  if (folder == work.planned.session && !is_there(work.header->archive)) {
     return Error{ErrorKind::kTryAgain, "archive is not there", work.header->archive,
                  "this machine does not see it", "mount it, then run the same command again"};
   }
@@ -33,26 +33,27 @@ Result<fs::path> check_session(const SessionWork& work) {
   }
   const Result<Session> session = read_session(folder);
   if (!session) return session.error();
-  if (batch::digest_of_session(session->document) != work.job.digest) {
+  if (batch::digest_of_session(session->document) != work.planned.digest) {
     return Error{ErrorKind::kBadData, "session was changed since the plan", folder.string(),
                  "its session.json differs in what a solve depends on", "plan again"};
   }
   const auto& named = work.header->calibrations;
-  const auto found = std::ranges::find(named, work.job.calibration, &batch::NamedCalibration::id);
+  const auto found = std::ranges::find(named, work.planned.calibration, &batch::NamedCalibration::id);
   const fs::path own = found == named.end() ? fs::path() : fs::path(found->folder);
   const fs::path used = own.empty() ? session->calibration_folder() : own;
   const Result<Calibration> calibration = read_calibration(used);
   if (!calibration) return calibration.error();
-  if (calibration->id == work.job.calibration) return own;
-  return Error{ErrorKind::kBadData, "calibration was changed since the plan", used.string(),
-               fmt::format("its id is {:.12}, the plan names {:.12}", calibration->id, work.job.calibration),
-               "plan again"};
+  if (calibration->id == work.planned.calibration) return own;
+  return Error{
+      ErrorKind::kBadData, "calibration was changed since the plan", used.string(),
+      fmt::format("its id is {:.12}, the plan names {:.12}", calibration->id, work.planned.calibration),
+      "plan again"};
 }
 
 // The whole solve, where it belongs.
 Result<SolveReport> solve_whole(const SessionOptions& input, SolveOptions options, const SessionWork& work,
                                 const JobContext& context) {
-  options.output = work.solves / work.job.solve;
+  options.output = work.solves / work.planned.solve;
   Result<SolveReport> report = solve_session(input, options, context);
   const bool was_second = !report && report.error().kind == ErrorKind::kCannotCreate &&
                           is_there(options.output / kSolveProduct.document);
@@ -62,7 +63,7 @@ Result<SolveReport> solve_whole(const SessionOptions& input, SolveOptions option
 // Only what is kept, made of a whole solve aside.
 Result<SolveReport> solve_lean(const SessionOptions& input, SolveOptions options, const SessionWork& work,
                                const JobContext& context) {
-  const Product target = {kSolveProduct, work.job.solve, work.solves / work.job.solve};
+  const Product target = {kSolveProduct, work.planned.solve, work.solves / work.planned.solve};
   const Result<std::optional<Json>> finished = find_finished(target);
   if (!finished) return finished.error();
   if (*finished) {
@@ -101,7 +102,7 @@ void add_facts_of(const SolveReport& report, batch::Outcome& outcome) {
 }
 
 void compare_with_before(const SessionWork& work, const JobContext& context, batch::Outcome& outcome) {
-  const std::string& before = work.job.before;
+  const std::string& before = work.planned.before;
   if (before.empty() || before == outcome.solve) return;
   const fs::path folder = work.session / "solve" / before;
   if (!is_there(folder / kSolveProduct.document)) {
@@ -127,7 +128,7 @@ batch::Outcome ended_by(const SessionWork& work, Error error) {
              "run it with more --memory, or on a larger machine"};
   batch::Outcome outcome;
   outcome.plan = work.header->id;
-  outcome.session = work.job.session;
+  outcome.session = work.planned.session;
   outcome.state = batch::is_of_session(error.kind) ? batch::State::kFailed : batch::State::kLost;
   outcome.error = std::move(error);
   return outcome;
@@ -138,10 +139,10 @@ batch::Outcome work_on_session(const SessionWork& work, const JobContext& contex
   const Result<fs::path> calibration = check_session(work);
   if (!calibration) return ended_by(work, calibration.error());
   SolveOptions options;
-  options.method = work.job.quality;
+  options.method = work.planned.quality;
   options.plan = work.header->id;
   options.compression = compression_of(work.product);
-  const batch::Forecast& forecast = work.job.forecast;
+  const batch::Forecast& forecast = work.planned.forecast;
   if (forecast.solve_seconds > 0)
     options.foretold = SolvePrice{forecast.solve_seconds, forecast.degrees, forecast.solved, {}};
   const SessionOptions input = {.folder = work.session, .calibration = *calibration, .leds = {}};
@@ -150,7 +151,7 @@ batch::Outcome work_on_session(const SessionWork& work, const JobContext& contex
   if (!report) return ended_by(work, report.error());
   batch::Outcome outcome;
   outcome.plan = work.header->id;
-  outcome.session = work.job.session;
+  outcome.session = work.planned.session;
   add_facts_of(*report, outcome);
   const SolveOfSession solved = {work.session, work.solves / outcome.solve, *calibration};
   Result<std::vector<std::string>> made = make_follow_ups(solved, work.product, context);

@@ -13,7 +13,7 @@ namespace weft::app {
 /// A session of a plan, and where it is worked on.
 struct SessionWork {
   const batch::Header* header = nullptr;
-  batch::Job job;
+  batch::PlannedSolve planned;
   batch::Product product;         ///< what is kept
   std::filesystem::path session;  ///< where it is now: as planned, or fetched
   std::filesystem::path solves;   ///< its solves go here by their id

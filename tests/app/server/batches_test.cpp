@@ -35,13 +35,13 @@ class Batches : public testing::Test {
     port_ = server_->port();
     ASSERT_TRUE(begin_batch(places(), "night", {"/archive/a.weft"}));
     batch::Plan plan = batch::sample_plan(3);
-    for (batch::Job& job : plan.jobs)
-      job.session = (scripted_.rig.scan.sessions / fs::path(job.session).filename()).string();
+    for (batch::PlannedSolve& planned : plan.solves)
+      planned.session = (scripted_.rig.scan.sessions / fs::path(planned.session).filename()).string();
     plan.header.solver_version = kSolverVersion;
     plan.left_out.push_back({"/archive/torn.weft", batch::Reason::kUnsolvable, "bad_data",
                              "session cannot be read: it is torn", 0});
     plan.header.curve = {{1, 0.9}, {2, 0.7}};
-    jobs_ = plan.jobs;
+    solves_ = plan.solves;
     ASSERT_TRUE(write_plan(plan_of_batch(places(), "night"), batch::text_of(plan)));
     const Result<PlanFile> file = open_plan(plan_of_batch(places(), "night"));
     ASSERT_TRUE(file) << file.error().message();
@@ -52,10 +52,10 @@ class Batches : public testing::Test {
   void write_results(const PlanFile& file) const {
     batch::Outcome worse;
     worse.plan = file.header.id;
-    worse.session = jobs_[0].session;
+    worse.session = solves_[0].session;
     worse.state = batch::State::kSolved;
-    worse.solve = jobs_[0].solve;
-    worse.folder = (fs::path(jobs_[0].session) / "solve" / worse.solve).string();
+    worse.solve = solves_[0].solve;
+    worse.folder = (fs::path(solves_[0].session) / "solve" / worse.solve).string();
     worse.change = batch::MapChange{};
     worse.change->pixels = 100;
     worse.change->mean_deg = 3.5;
@@ -65,12 +65,13 @@ class Batches : public testing::Test {
     ASSERT_TRUE(write_file(fs::path(worse.folder) / kSolveProduct.document, "{}"));
     batch::Outcome failed;
     failed.plan = file.header.id;
-    failed.session = jobs_[1].session;
+    failed.session = solves_[1].session;
     failed.state = batch::State::kFailed;
     failed.error =
         Error{ErrorKind::kBadData, "frame is truncated", "raw/3.nef", "it ends early", "copy it again"};
     for (const batch::Outcome& each : {worse, failed})
-      ASSERT_TRUE(add_outcome(file, each.session == jobs_[0].session ? jobs_[0].task : jobs_[1].task, each));
+      ASSERT_TRUE(
+          add_outcome(file, each.session == solves_[0].session ? solves_[0].task : solves_[1].task, each));
   }
 
   fs::path places() const { return scripted_.rig.daemon.state / kBatchFolder; }
@@ -92,7 +93,7 @@ class Batches : public testing::Test {
   ScriptedRig scripted_{"batches"};
   std::unique_ptr<RigServer> server_;
   int port_ = 0;
-  std::vector<batch::Job> jobs_;
+  std::vector<batch::PlannedSolve> solves_;
 };
 
 TEST_F(Batches, AreListedWithWhatTheyCost) {
@@ -139,11 +140,11 @@ TEST_F(Batches, ServeTheReportsFilesAndNoOthers) {
   fs::create_directories(report);
   ASSERT_TRUE(write_file(report / "report.html", "<h1>Batch</h1>"));
   ASSERT_TRUE(write_file(report / "worst-01.png", "\x89PNG"));
-  ASSERT_TRUE(
-      write_file(report / "report.json",
-                 Json{{"schema", "weft.batch-report/1.1"},
-                      {"pictures", Json::array({{{"session", jobs_[0].session}, {"file", "worst-01.png"}}})}}
-                     .dump()));
+  ASSERT_TRUE(write_file(
+      report / "report.json",
+      Json{{"schema", "weft.batch-report/1.1"},
+           {"pictures", Json::array({{{"session", solves_[0].session}, {"file", "worst-01.png"}}})}}
+          .dump()));
   const Answer page = get("/night/files/report.html");
   EXPECT_EQ(page.status, 200);
   EXPECT_THAT(page.head, HasSubstr("default-src 'none'"));

@@ -17,10 +17,10 @@ TEST(Plan, IsReadAsItWasWritten) {
   plan.header.product = {{"normal", "albedo"}, true, "zip", {}};
   plan.header.calibrations = {{"/rig/new", "beef", "rig a"}};
   plan.header.curve = {{0.5, 2.5}, {1.0, 0.7}};
-  plan.jobs[3].before = "old";
-  plan.jobs[3].forecast.turn_deg = 0.25;
-  plan.jobs[2].forecast.solved = 0.9;
-  plan.jobs[2].forecast.solve_seconds = 80;
+  plan.solves[3].before = "old";
+  plan.solves[3].forecast.turn_deg = 0.25;
+  plan.solves[2].forecast.solved = 0.9;
+  plan.solves[2].forecast.solve_seconds = 80;
   plan.header.levels[0].solved = 0.95;
   plan.left_out = {{"/archive/a.weft", Reason::kUnsolvable, "bad_data", "it is \"odd\"\nand long", 0},
                    {"/archive/b.weft", Reason::kTurnsLittle, "", "", 12.5}};
@@ -33,31 +33,31 @@ TEST(Plan, IsReadAsItWasWritten) {
 }
 
 TEST(Plan, WeighsTheErrorOfEachClothByTheShareThatItHoldsFor) {
-  std::vector<Job> jobs = {sample_job(0), sample_job(1)};
-  jobs[0].forecast.degrees = 0.8;
-  jobs[1].forecast.degrees = 0.25;
-  jobs[1].forecast.solved = 0.1;
-  EXPECT_DOUBLE_EQ(error_of(jobs).degrees(), (0.8 + 0.025) / 1.1);
-  EXPECT_DOUBLE_EQ(error_of(jobs).solved(), 0.55);
+  std::vector<PlannedSolve> solves = {sample_solve(0), sample_solve(1)};
+  solves[0].forecast.degrees = 0.8;
+  solves[1].forecast.degrees = 0.25;
+  solves[1].forecast.solved = 0.1;
+  EXPECT_DOUBLE_EQ(error_of(solves).degrees(), (0.8 + 0.025) / 1.1);
+  EXPECT_DOUBLE_EQ(error_of(solves).solved(), 0.55);
   EXPECT_EQ(error_of({}).degrees(), 0);
 }
 
 TEST(Plan, HasATaskOfAboutSoManySeconds) {
-  std::vector<Job> jobs = {sample_job(0, 100), sample_job(1, 149), sample_job(2, 2), sample_job(3, 900),
-                           sample_job(4, 250)};
-  share_out(jobs, 250);
+  std::vector<PlannedSolve> solves = {sample_solve(0, 100), sample_solve(1, 149), sample_solve(2, 2),
+                                      sample_solve(3, 900), sample_solve(4, 250)};
+  share_out(solves, 250);
   std::vector<int> tasks;
-  for (const Job& job : jobs) tasks.push_back(job.task);
+  for (const PlannedSolve& planned : solves) tasks.push_back(planned.task);
   EXPECT_THAT(tasks, testing::ElementsAre(0, 0, 1, 2, 3));
 }
 
 TEST(Plan, WhoseSecondsAreNotKnownHasTasksOfAHundredSessions) {
-  std::vector<Job> jobs;
-  for (int i = 0; i < 250; ++i) jobs.push_back(sample_job(i, 0));
-  share_out(jobs, 600);
-  EXPECT_EQ(jobs[99].task, 0);
-  EXPECT_EQ(jobs[100].task, 1);
-  EXPECT_EQ(jobs.back().task, 2);
+  std::vector<PlannedSolve> solves;
+  for (int i = 0; i < 250; ++i) solves.push_back(sample_solve(i, 0));
+  share_out(solves, 600);
+  EXPECT_EQ(solves[99].task, 0);
+  EXPECT_EQ(solves[100].task, 1);
+  EXPECT_EQ(solves.back().task, 2);
 }
 
 TEST(Plan, SaysWhereTheLinesOfEachTaskLie) {
@@ -68,13 +68,14 @@ TEST(Plan, SaysWhereTheLinesOfEachTaskLie) {
   int number = 0;
   for (std::size_t task = 0; task < plan.header.tasks.size(); ++task) {
     const TaskPlace& place = plan.header.tasks[task];
-    const Result<std::vector<Job>> jobs =
-        jobs_from_lines(std::string_view(text).substr(lines_at + place.offset, place.bytes), "plan");
-    ASSERT_TRUE(jobs) << jobs.error().message();
-    EXPECT_EQ(static_cast<int>(jobs->size()), place.sessions);
+    const Result<std::vector<PlannedSolve>> solves =
+        solves_from_lines(std::string_view(text).substr(lines_at + place.offset, place.bytes), "plan");
+    ASSERT_TRUE(solves) << solves.error().message();
+    EXPECT_EQ(static_cast<int>(solves->size()), place.sessions);
     EXPECT_DOUBLE_EQ(place.seconds, 100.0 * place.sessions);
-    for (const Job& job : *jobs) EXPECT_EQ(job, plan.jobs[static_cast<std::size_t>(number++)]);
-    EXPECT_EQ(place.memory_bytes, jobs->back().memory_bytes) << "the largest of task " << task;
+    for (const PlannedSolve& planned : *solves)
+      EXPECT_EQ(planned, plan.solves[static_cast<std::size_t>(number++)]);
+    EXPECT_EQ(place.memory_bytes, solves->back().memory_bytes) << "the largest of task " << task;
   }
   EXPECT_EQ(number, 7);
 }
@@ -128,8 +129,8 @@ TEST(Plan, ThatIsNoneIsRefusedWhateverItIs) {
 
 TEST(Plan, OfTenThousandTasksHasAHeaderOfLessThanAMegabyte) {
   Plan plan = sample_plan(0);
-  for (int i = 0; i < 10'000; ++i) plan.jobs.push_back(sample_job(i, 600));
-  share_out(plan.jobs, 600);
+  for (int i = 0; i < 10'000; ++i) plan.solves.push_back(sample_solve(i, 600));
+  share_out(plan.solves, 600);
   const std::string text = text_of(plan);
   ASSERT_EQ(plan.header.tasks.size(), 10'000U);
   EXPECT_LT(text.find('\n'), 1'000'000U);

@@ -27,10 +27,10 @@ TEST(StoredLines, OfAPlanAreRead) {
     const std::string text = stored("weft.batch-" + version + "/night.jsonl");
     const Result<Plan> plan = plan_from_text(text, "night.jsonl");
     ASSERT_TRUE(plan) << version << ": " << plan.error().message();
-    ASSERT_EQ(plan->jobs.size(), 1U);
-    EXPECT_EQ(plan->jobs[0].session, "/archive/twill.weft");
+    ASSERT_EQ(plan->solves.size(), 1U);
+    EXPECT_EQ(plan->solves[0].session, "/archive/twill.weft");
     EXPECT_EQ(plan->header.tasks.size(), 1U);
-    EXPECT_EQ(plan->jobs[0].forecast.solved, version == "1" ? 1 : 0.9375);
+    EXPECT_EQ(plan->solves[0].forecast.solved, version == "1" ? 1 : 0.9375);
     Plan again = *plan;
     EXPECT_EQ(text_of(again), text) << version;
   }
@@ -68,7 +68,7 @@ TEST(StoredLines, OfResultsAreRead) {
     ASSERT_EQ(histories.size(), 1U);
     const History& history = histories.begin()->second;
     ASSERT_TRUE(history.result);
-    EXPECT_EQ(history.result->solve, plan->jobs[0].solve);
+    EXPECT_EQ(history.result->solve, plan->solves[0].solve);
     EXPECT_EQ(history.result->solved.has_value(), version == "1.1");
     EXPECT_TRUE(history.result->change);
     EXPECT_EQ(line_of(*history.result), text);

@@ -14,11 +14,11 @@
 namespace weft::batch {
 namespace {
 
-Outcome done(const Job& job, double seconds = 50) {
+Outcome done(const PlannedSolve& planned, double seconds = 50) {
   Outcome outcome;
-  outcome.session = job.session;
+  outcome.session = planned.session;
   outcome.state = State::kSolved;
-  outcome.solve = job.solve;
+  outcome.solve = planned.solve;
   outcome.seconds = 2 * seconds;
   outcome.node_seconds = seconds;
   outcome.sigma_deg = 0.7;
@@ -26,25 +26,25 @@ Outcome done(const Job& job, double seconds = 50) {
   return outcome;
 }
 
-Outcome ended(const Job& job, State state, ErrorKind kind, const std::string& what) {
+Outcome ended(const PlannedSolve& planned, State state, ErrorKind kind, const std::string& what) {
   Outcome outcome;
-  outcome.session = job.session;
+  outcome.session = planned.session;
   outcome.state = state;
-  outcome.error = {kind, what, job.session, "", ""};
+  outcome.error = {kind, what, planned.session, "", ""};
   return outcome;
 }
 
 TEST(Summary, CountsWhatIsSolvedFailedAndMissing) {
   const Plan plan = sample_plan(6);
   std::map<std::string, History> histories;
-  histories[plan.jobs[0].session] = {done(plan.jobs[0]), {}, 1};
-  histories[plan.jobs[1].session] = {done(plan.jobs[1], 70), {}, 2};
-  histories[plan.jobs[2].session] = {
-      ended(plan.jobs[2], State::kFailed, ErrorKind::kBadData, "raw is damaged"), {}, 1};
-  histories[plan.jobs[3].session] = {
-      ended(plan.jobs[3], State::kFailed, ErrorKind::kBadData, "raw is damaged"), {}, 1};
-  histories[plan.jobs[4].session] = {
-      {}, ended(plan.jobs[4], State::kLost, ErrorKind::kTryAgain, "out of memory"), 1};
+  histories[plan.solves[0].session] = {done(plan.solves[0]), {}, 1};
+  histories[plan.solves[1].session] = {done(plan.solves[1], 70), {}, 2};
+  histories[plan.solves[2].session] = {
+      ended(plan.solves[2], State::kFailed, ErrorKind::kBadData, "raw is damaged"), {}, 1};
+  histories[plan.solves[3].session] = {
+      ended(plan.solves[3], State::kFailed, ErrorKind::kBadData, "raw is damaged"), {}, 1};
+  histories[plan.solves[4].session] = {
+      {}, ended(plan.solves[4], State::kLost, ErrorKind::kTryAgain, "out of memory"), 1};
   const std::vector<Row> rows = rows_of(plan, histories);
   const Summary summary = summarize(rows);
   EXPECT_EQ(summary.solved, 2);
@@ -65,13 +65,13 @@ TEST(Summary, CountsWhatIsSolvedFailedAndMissing) {
 TEST(Summary, NamesWhatIsHardlySolvedAndWeighsErrorsByTheClothThatTheyHoldFor) {
   const Plan plan = sample_plan(3);
   std::map<std::string, History> histories;
-  for (const Job& job : plan.jobs) histories[job.session] = {done(job, 80), {}, 1};
-  Outcome& spoiled = *histories[plan.jobs[1].session].result;
+  for (const PlannedSolve& planned : plan.solves) histories[planned.session] = {done(planned, 80), {}, 1};
+  Outcome& spoiled = *histories[plan.solves[1].session].result;
   spoiled.expected_deg = 0.25;
   spoiled.solved = 0.1;
   spoiled.warnings = {"OVEREXPOSED"};
   for (const int good : {0, 2})
-    histories[plan.jobs[static_cast<std::size_t>(good)].session].result->expected_deg = 0.8;
+    histories[plan.solves[static_cast<std::size_t>(good)].session].result->expected_deg = 0.8;
   const std::vector<Row> rows = rows_of(plan, histories);
   const Summary summary = summarize(rows);
   EXPECT_EQ(summary.solved, 3);
@@ -81,7 +81,7 @@ TEST(Summary, NamesWhatIsHardlySolvedAndWeighsErrorsByTheClothThatTheyHoldFor) {
   EXPECT_DOUBLE_EQ(summary.error.degrees(), (2 * 0.8 + 0.1 * 0.25) / 2.1);
   EXPECT_DOUBLE_EQ(summary.seconds_ratio(), summary.predicted_seconds / 240);
   const Json json = object_of(SummaryDocument{summary, rows});
-  EXPECT_EQ(json["barely_solved"], Json({plan.jobs[1].session}));
+  EXPECT_EQ(json["barely_solved"], Json({plan.solves[1].session}));
   EXPECT_EQ(json["seconds_ratio"], summary.seconds_ratio());
   EXPECT_EQ(json["sessions"][1]["solved"], 0.1);
 }
@@ -89,15 +89,15 @@ TEST(Summary, NamesWhatIsHardlySolvedAndWeighsErrorsByTheClothThatTheyHoldFor) {
 TEST(Summary, NamesTheCalibrationFirstThatMadeSessionsWorse) {
   Plan plan = sample_plan(6);
   std::map<std::string, History> histories;
-  for (std::size_t i = 0; i < plan.jobs.size(); ++i) {
-    Job& job = plan.jobs[i];
-    job.calibration = i < 2 ? "good" : i < 4 ? "wrong" : "fine";
-    Outcome outcome = done(job);
+  for (std::size_t i = 0; i < plan.solves.size(); ++i) {
+    PlannedSolve& planned = plan.solves[i];
+    planned.calibration = i < 2 ? "good" : i < 4 ? "wrong" : "fine";
+    Outcome outcome = done(planned);
     MapChange change;
     change.mean_deg = change.p95_deg = change.max_deg = i < 2 ? 9 : 2;
-    change.sigma_deg = {0.5, job.calibration == "wrong" ? 0.9 : 0.5};
+    change.sigma_deg = {0.5, planned.calibration == "wrong" ? 0.9 : 0.5};
     outcome.change = change;
-    histories[job.session] = {outcome, {}, 1};
+    histories[planned.session] = {outcome, {}, 1};
   }
   const std::vector<Row> rows = rows_of(plan, histories);
   const Summary summary = summarize(rows);
@@ -106,19 +106,19 @@ TEST(Summary, NamesTheCalibrationFirstThatMadeSessionsWorse) {
   EXPECT_EQ(summary.calibrations.front().worse, 2);
   EXPECT_EQ(summary.worse, 2);
   ASSERT_EQ(summary.changed.size(), 6U);
-  EXPECT_EQ(rows[summary.changed[0]].job->calibration, "wrong")
+  EXPECT_EQ(rows[summary.changed[0]].planned->calibration, "wrong")
       << "regressions come before what turned further";
-  EXPECT_EQ(rows[summary.changed[2]].job->calibration, "good");
+  EXPECT_EQ(rows[summary.changed[2]].planned->calibration, "good");
 }
 
 TEST(Summary, NamesTheCalibrationFirstWhoseLeftOutLightsAreOffWhereNothingWasSolvedBefore) {
   Plan plan = sample_plan(4);
   std::map<std::string, History> histories;
-  for (std::size_t i = 0; i < plan.jobs.size(); ++i) {
-    plan.jobs[i].calibration = i % 2 == 0 ? "a" : "b";
-    Outcome outcome = done(plan.jobs[i]);
+  for (std::size_t i = 0; i < plan.solves.size(); ++i) {
+    plan.solves[i].calibration = i % 2 == 0 ? "a" : "b";
+    Outcome outcome = done(plan.solves[i]);
     outcome.left_out = i % 2 == 0 ? 0.03 : 0.12;
-    histories[plan.jobs[i].session] = {outcome, {}, 1};
+    histories[plan.solves[i].session] = {outcome, {}, 1};
   }
   EXPECT_EQ(summarize(rows_of(plan, histories)).calibrations.front().calibration, "b");
 }
@@ -126,10 +126,10 @@ TEST(Summary, NamesTheCalibrationFirstWhoseLeftOutLightsAreOffWhereNothingWasSol
 TEST(Summary, OfAnUnchangedArchiveHasNoChangedPixel) {
   const Plan plan = sample_plan(2);
   std::map<std::string, History> histories;
-  for (const Job& job : plan.jobs) {
-    Outcome outcome = done(job);
+  for (const PlannedSolve& planned : plan.solves) {
+    Outcome outcome = done(planned);
     outcome.change = MapChange{.pixels = 100};
-    histories[job.session] = {outcome, {}, 1};
+    histories[planned.session] = {outcome, {}, 1};
   }
   const Summary summary = summarize(rows_of(plan, histories));
   EXPECT_EQ(summary.unchanged, 2);

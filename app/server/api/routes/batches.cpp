@@ -127,33 +127,34 @@ Json left_out_of(const batch::Plan& plan) {
 }
 
 // The dearest first.
-Json jobs_of(const batch::Plan& plan) {
-  std::vector<const batch::Job*> jobs;
-  for (const batch::Job& job : plan.jobs) jobs.push_back(&job);
-  std::ranges::stable_sort(jobs, std::greater{}, [](const batch::Job* job) { return job->forecast.seconds; });
-  if (jobs.size() > kMostListed) jobs.resize(kMostListed);
+Json solves_of(const batch::Plan& plan) {
+  std::vector<const batch::PlannedSolve*> solves;
+  for (const batch::PlannedSolve& planned : plan.solves) solves.push_back(&planned);
+  std::ranges::stable_sort(solves, std::greater{},
+                           [](const batch::PlannedSolve* planned) { return planned->forecast.seconds; });
+  if (solves.size() > kMostListed) solves.resize(kMostListed);
   Json list = Json::array();
-  for (const batch::Job* job : jobs)
-    list.push_back({{"session", name_of_session(job->session)},
-                    {"quality", job->quality},
-                    {"seconds", job->forecast.seconds},
-                    {"seconds_spread", job->forecast.seconds_spread},
-                    {"degrees", job->forecast.degrees},
-                    {"degrees_spread", job->forecast.degrees_spread},
-                    {"solved", job->forecast.solved},
-                    {"is_measured", job->forecast.is_measured},
-                    {"turn_deg", optional_json(job->forecast.turn_deg)},
-                    {"before", job->before}});
+  for (const batch::PlannedSolve* planned : solves)
+    list.push_back({{"session", name_of_session(planned->session)},
+                    {"quality", planned->quality},
+                    {"seconds", planned->forecast.seconds},
+                    {"seconds_spread", planned->forecast.seconds_spread},
+                    {"degrees", planned->forecast.degrees},
+                    {"degrees_spread", planned->forecast.degrees_spread},
+                    {"solved", planned->forecast.solved},
+                    {"is_measured", planned->forecast.is_measured},
+                    {"turn_deg", optional_json(planned->forecast.turn_deg)},
+                    {"before", planned->before}});
   return list;
 }
 
 Json planned_of(const BatchState& state) {
   const batch::Plan& plan = state.plan;
-  const batch::MeanError error = batch::error_of(plan.jobs);
+  const batch::MeanError error = batch::error_of(plan.solves);
   std::uint64_t memory = 0, write = 0;
-  for (const batch::Job& job : plan.jobs) {
-    memory = std::max(memory, job.memory_bytes);
-    write += job.write_bytes;
+  for (const batch::PlannedSolve& planned : plan.solves) {
+    memory = std::max(memory, planned.memory_bytes);
+    write += planned.write_bytes;
   }
   return {{"id", plan.header.id},
           {"mean_deg", error.degrees()},
@@ -166,7 +167,7 @@ Json planned_of(const BatchState& state) {
           {"curve", curve_of(plan.header)},
           {"reasons", reasons_of(plan)},
           {"left_out_sessions", left_out_of(plan)},
-          {"jobs", jobs_of(plan)}};
+          {"jobs", solves_of(plan)}};
 }
 
 /// Errors of find_batch() and read_batch(); kNoInput where its plan is not made.
@@ -212,10 +213,10 @@ Json changes_of(const BatchState& state, const fs::path& report) {
   for (const std::size_t index : state.summary.changed) {
     if (changes.size() == kMostListed) break;
     const batch::Row& row = state.rows[index];
-    const auto picture = pictures.find(row.job->session);
-    changes.push_back({{"session", name_of_session(row.job->session)},
+    const auto picture = pictures.find(row.planned->session);
+    changes.push_back({{"session", name_of_session(row.planned->session)},
                        {"solve", row.result->solve},
-                       {"before", row.job->before},
+                       {"before", row.planned->before},
                        {"change", object_of(*row.result->change)},
                        {"regressions", batch::regressions(*row.result->change)},
                        {"picture", picture == pictures.end() ? Json() : Json(picture->second)}});
@@ -227,7 +228,7 @@ Json names_of(const std::vector<std::size_t>& rows, const BatchState& state) {
   Json names = Json::array();
   for (const std::size_t index : rows) {
     if (names.size() == kMostListed) break;
-    names.push_back(name_of_session(state.rows[index].job->session));
+    names.push_back(name_of_session(state.rows[index].planned->session));
   }
   return names;
 }
