@@ -33,7 +33,7 @@ std::string shell_line(const std::vector<std::string>& command) {
 
 Json submitted_json(const SubmitReport& report) {
   Json arrays = Json::array();
-  for (const SubmittedJob& each : report.arrays)
+  for (const SbatchCall& each : report.arrays)
     arrays.push_back({{"job", each.job},
                       {"tasks", each.array.tasks},
                       {"memory_bytes", each.array.memory_bytes},
@@ -51,7 +51,7 @@ void print_submitted(const SubmitReport& report, bool dry_run) {
   if (!report.queued.tasks.empty())
     print(fmt::format("{} tasks are queued already: job {}", report.queued.tasks.size(),
                       fmt::join(report.queued.jobs(), ", ")));
-  for (const SubmittedJob& each : report.arrays) {
+  for (const SbatchCall& each : report.arrays) {
     print(dry_run ? shell_line(each.command)
                   : fmt::format("job {}: {} tasks, {} MB and {} minutes each", each.job,
                                 each.array.tasks.size(), each.array.memory_bytes >> 20, each.array.minutes));

@@ -69,11 +69,11 @@ void print_notes(const CalibrateOutcome& outcome) {
   for (const std::string& warning : outcome.warnings) note(warning);
 }
 
-Run run_job(Options& options, CalibrateJob job, ExitCode of_verdicts) {
+Run run_work(Options& options, CalibrateWork work, ExitCode of_verdicts) {
   const auto strict = std::make_shared<bool>(false);
   options.add_flag("--strict", strict.get(), "Exit with 2 where the report has something to say");
-  return [strict, job = std::move(job), of_verdicts](const CommonArguments& common) -> Result<int> {
-    const Result<CalibrateOutcome> outcome = run_and_print(job, common);
+  return [strict, work = std::move(work), of_verdicts](const CommonArguments& common) -> Result<int> {
+    const Result<CalibrateOutcome> outcome = run_and_print(work, common);
     if (!outcome) return outcome.error();
     if (!outcome->report.verdicts.empty() && of_verdicts != kDone) return of_verdicts;
     const bool warned = !outcome->report.verdicts.empty() || !outcome->warnings.empty();
@@ -83,10 +83,10 @@ Run run_job(Options& options, CalibrateJob job, ExitCode of_verdicts) {
 
 }  // namespace
 
-Result<CalibrateOutcome> run_and_print(const CalibrateJob& job, const CommonArguments& common) {
+Result<CalibrateOutcome> run_and_print(const CalibrateWork& work, const CommonArguments& common) {
   Result<CalibrateOutcome> outcome = [&] {
     ProgressLine line(common.quiet);
-    return job({common.threads, stop_on_signal(), line.callback()});
+    return work({common.threads, stop_on_signal(), line.callback()});
   }();
   if (!outcome) return outcome;
   print_outcome(*outcome, common);
@@ -94,12 +94,12 @@ Result<CalibrateOutcome> run_and_print(const CalibrateJob& job, const CommonArgu
   return outcome;
 }
 
-Run run_step(Options& options, CalibrateJob job) {
-  return run_job(options, std::move(job), kDone);
+Run run_step(Options& options, CalibrateWork work) {
+  return run_work(options, std::move(work), kDone);
 }
 
-Run run_check(Options& options, CalibrateJob job) {
-  return run_job(options, std::move(job), kBadDataError);
+Run run_check(Options& options, CalibrateWork work) {
+  return run_work(options, std::move(work), kBadDataError);
 }
 
 Verb calibrate_verb() {

@@ -12,10 +12,10 @@
 namespace weft::app {
 
 /// The work of one step, by what its options have read.
-using CalibrateJob = std::function<Result<CalibrateOutcome>(const JobContext&)>;
+using CalibrateWork = std::function<Result<CalibrateOutcome>(const JobContext&)>;
 
-/// Runs a job, and prints what came out of it: as JSON, or for people.
-Result<CalibrateOutcome> run_and_print(const CalibrateJob& job, const CommonArguments& common);
+/// Does the work, and prints what came out of it: as JSON, or for people.
+Result<CalibrateOutcome> run_and_print(const CalibrateWork& work, const CommonArguments& common);
 
 /// Prints what a calibration makes different from the rig's own. `is_accepted` is said of it in JSON.
 Result<void> print_change(const std::filesystem::path& rig_file, const std::filesystem::path& calibration,
@@ -24,11 +24,11 @@ Result<void> print_change(const std::filesystem::path& rig_file, const std::file
 Result<void> accept_calibration(const std::filesystem::path& rig_file,
                                 const std::filesystem::path& calibration);
 
-/// Adds --strict. The step does its job, and prints what came out of it.
-Run run_step(Options& options, CalibrateJob job);
+/// Adds --strict. The step does its work, and prints what came out of it.
+Run run_step(Options& options, CalibrateWork work);
 
 /// The same of a step that asks whether a calibration holds: exit code 65 where it does not.
-Run run_check(Options& options, CalibrateJob job);
+Run run_check(Options& options, CalibrateWork work);
 
 // The verbs of `weft calibrate`: those that measure a part, and those that look at what was measured.
 Verb calibrate_camera_verb();

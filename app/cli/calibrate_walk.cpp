@@ -46,32 +46,32 @@ struct WalkArguments {
   bool trap = false, once = false, enough = false, yes = false;
 };
 
-using Job = Result<CalibrateOutcome> (*)(const fs::path& set, const fs::path& from, const fs::path& output,
-                                         const JobContext& context);
+using SetWork = Result<CalibrateOutcome> (*)(const fs::path& set, const fs::path& from,
+                                             const fs::path& output, const JobContext& context);
 
 /// One of the walk, as it is told.
 struct Stage : WalkStage {
   fs::path description;  ///< of its board, sheet or chart; empty: not told
-  Job job_of_set;        ///< of the set in a folder, by a calibration, into another folder
+  SetWork work;          ///< of the set in a folder, by a calibration, into another folder
 };
 
-/// A job whose options name a set, a calibration and an output.
-template <auto kInput, auto kJob, typename JobOptions>
+/// The work whose options name a set, a calibration and an output.
+template <auto kInput, auto kWork, typename WorkOptions>
 Result<CalibrateOutcome> of_set(const fs::path& set, const fs::path& from, const fs::path& output,
                                 const JobContext& context) {
-  JobOptions options;
+  WorkOptions options;
   options.*kInput = set;
   options.from = from;
   options.output = output;
-  return kJob(options, context);
+  return kWork(options, context);
 }
 
-constexpr Job camera = of_set<&CalibrateCameraOptions::input, calibrate_camera, CalibrateCameraOptions>,
-              lights = of_set<&CalibrateLightsOptions::input, calibrate_lights, CalibrateLightsOptions>,
-              color = of_set<&CalibrateColorOptions::input, calibrate_color, CalibrateColorOptions>,
-              proof = of_set<&CalibrateCheckOptions::input, calibrate_check, CalibrateCheckOptions>,
-              moved = of_set<&CheckRigOptions::session, calibrate_check_rig, CheckRigOptions>,
-              update = of_set<&CalibrateUpdateOptions::session, calibrate_update, CalibrateUpdateOptions>;
+constexpr SetWork camera = of_set<&CalibrateCameraOptions::input, calibrate_camera, CalibrateCameraOptions>,
+                  lights = of_set<&CalibrateLightsOptions::input, calibrate_lights, CalibrateLightsOptions>,
+                  color = of_set<&CalibrateColorOptions::input, calibrate_color, CalibrateColorOptions>,
+                  proof = of_set<&CalibrateCheckOptions::input, calibrate_check, CalibrateCheckOptions>,
+                  moved = of_set<&CheckRigOptions::session, calibrate_check_rig, CheckRigOptions>,
+                  update = of_set<&CalibrateUpdateOptions::session, calibrate_update, CalibrateUpdateOptions>;
 
 /// With the black trap of the same walk, where there is one.
 Result<CalibrateOutcome> response(const fs::path& set, const fs::path& from, const fs::path& output,
@@ -86,14 +86,14 @@ Result<CalibrateOutcome> response(const fs::path& set, const fs::path& from, con
   return calibrate_response(options, context);
 }
 
-Job job_of(const WalkStage& stage) {
+SetWork work_of(const WalkStage& stage) {
   if (stage.part == kWalkMoved) return stage.job == "check" ? moved : update;
-  constexpr std::array<std::pair<std::string_view, Job>, 5> kJobs = {{{"calibrate_camera", camera},
-                                                                      {"calibrate_response", response},
-                                                                      {"calibrate_lights", lights},
-                                                                      {"calibrate_color", color},
-                                                                      {"check", proof}}};
-  return std::ranges::find(kJobs, stage.job, &std::pair<std::string_view, Job>::first)->second;
+  constexpr std::array<std::pair<std::string_view, SetWork>, 5> kWorks = {{{"calibrate_camera", camera},
+                                                                           {"calibrate_response", response},
+                                                                           {"calibrate_lights", lights},
+                                                                           {"calibrate_color", color},
+                                                                           {"check", proof}}};
+  return std::ranges::find(kWorks, stage.job, &std::pair<std::string_view, SetWork>::first)->second;
 }
 
 /// Optional ones are those that were asked for.
@@ -102,7 +102,7 @@ std::vector<Stage> stages_of(std::span<const WalkStage> walk, const WalkArgument
   for (const WalkStage& each : walk) {
     const fs::path& description = each.thing == "board" ? a.board : each.thing == "chart" ? a.chart : a.sheet;
     const bool is_asked = each.is_aside ? a.trap : !description.empty();
-    if (!each.is_optional || is_asked) stages.push_back({each, description, job_of(each)});
+    if (!each.is_optional || is_asked) stages.push_back({each, description, work_of(each)});
   }
   return stages;
 }
@@ -180,8 +180,7 @@ class Walk {
     if (!*is_complete) return std::optional<CalibrateOutcome>();
     if (Result<void> ok = make_writable_folder(output.parent_path()); !ok) return ok.error();
     Result<CalibrateOutcome> outcome = run_and_print(
-        [&](const JobContext& context) { return stage.job_of_set(set_of(stage), from, output, context); },
-        common_);
+        [&](const JobContext& context) { return stage.work(set_of(stage), from, output, context); }, common_);
     if (!outcome) return std::move(outcome).error();
     return std::optional(std::move(*outcome));
   }

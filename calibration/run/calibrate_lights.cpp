@@ -37,9 +37,9 @@ Error bad(ErrorKind kind, std::string what, std::string where, std::string why, 
   return {kind, std::move(what), std::move(where), std::move(why), std::move(remedy)};
 }
 
-class LightsJob {
+class LightsCalibration {
  public:
-  LightsJob(const CalibrateLightsOptions& options, const JobContext& context)
+  LightsCalibration(const CalibrateLightsOptions& options, const JobContext& context)
       : options_(options), context_(context) {}
 
   Result<CalibrateOutcome> run() {
@@ -83,7 +83,7 @@ class LightsJob {
   std::vector<Verdict> verdicts_;
 };
 
-Result<void> LightsJob::prepare() {
+Result<void> LightsCalibration::prepare() {
   if (options_.from.empty()) {
     return bad(ErrorKind::kUsage, "lights cannot be calibrated alone", "--from",
                "the camera says where each pixel looks, and the response what its counts mean",
@@ -118,7 +118,7 @@ Result<void> LightsJob::prepare() {
   return {};
 }
 
-Result<void> LightsJob::read() {
+Result<void> LightsCalibration::read() {
   Result<SheetCaptures> captures = read_sheet_captures({options_.input, calibration_, sheet_}, context_);
   if (!captures) return std::move(captures).error();
   captures_ = std::move(*captures);
@@ -145,11 +145,11 @@ Result<void> LightsJob::read() {
   return {};
 }
 
-void LightsJob::take_readings() {
+void LightsCalibration::take_readings() {
   evidence_.readings = merged_blocks(captures_, left_out_, cells());
 }
 
-calibration::CellGrid LightsJob::cells() const {
+calibration::CellGrid LightsCalibration::cells() const {
   const Size size = calibration_.camera->size;
   const int columns = std::min(kCellsAcross, captures_.columns);
   return {
@@ -157,7 +157,7 @@ calibration::CellGrid LightsJob::cells() const {
       std::clamp(static_cast<int>(std::lround(1.0 * columns * size.height / size.width)), 1, captures_.rows)};
 }
 
-calibration::LightFitOptions LightsJob::fit_options() const {
+calibration::LightFitOptions LightsCalibration::fit_options() const {
   calibration::LightFitOptions how;
   how.position_sigma_mm = options_.tape_sigma_mm;
   how.lambertian = options_.lambertian;
@@ -169,7 +169,7 @@ calibration::LightFitOptions LightsJob::fit_options() const {
 }
 
 // Fits, looks at the paper by that fit, and fits once more without what is wrong with it.
-Result<void> LightsJob::fit_clean_paper() {
+Result<void> LightsCalibration::fit_clean_paper() {
   for (bool again = true; again;) {
     if (context_.stop.stop_requested()) return interrupted();
     context_.progress("fit", evidence_.fit ? 0.5 : 0);
@@ -190,7 +190,7 @@ Result<void> LightsJob::fit_clean_paper() {
   return {};
 }
 
-Result<void> LightsJob::leave_out_faults(bool& any) {
+Result<void> LightsCalibration::leave_out_faults(bool& any) {
   const std::vector<PaperReading> blocks = single_blocks(captures_, left_out_);
   const std::vector<calibration::PaperSpot> spots = spots_of(evidence_.fit->scene, blocks);
   const CameraModel& camera = *calibration_.camera;
@@ -237,7 +237,7 @@ Result<void> LightsJob::leave_out_faults(bool& any) {
 }
 
 // The gate: do the readings agree with the model, and do they say enough?
-Result<void> LightsJob::judge() {
+Result<void> LightsCalibration::judge() {
   const calibration::LightFit& fit = *evidence_.fit;
   if (fit.misfits()) {
     std::string why = fmt::format(
@@ -281,7 +281,7 @@ Result<void> LightsJob::judge() {
 }
 
 // Worst over four azimuths at each cell of the frame.
-Result<void> LightsJob::predict() {
+Result<void> LightsCalibration::predict() {
   const calibration::LightFit& fit = *evidence_.fit;
   const Size size = calibration_.camera->size;
   std::vector<int> leds(fit.scene.lights.leds.size());
@@ -317,7 +317,7 @@ Result<void> LightsJob::predict() {
   return {};
 }
 
-Result<void> LightsJob::run_per_pixel() {
+Result<void> LightsCalibration::run_per_pixel() {
   calibration::PerPixelOptions how;
   how.threads = context_.threads;
   context_.progress("per pixel", 0);
@@ -341,7 +341,7 @@ Result<void> LightsJob::run_per_pixel() {
 }
 
 // On the sheet that lies flattest, as if it alone had been photographed.
-Result<void> LightsJob::run_seed() {
+Result<void> LightsCalibration::run_seed() {
   std::size_t flattest = 0;
   const auto tilt = [&](std::size_t j) {
     return angle_deg(normal_of(captures_.captures[j].pose.rig_from_sheet), {0, 0, 1});
@@ -368,7 +368,7 @@ Result<void> LightsJob::run_seed() {
   return {};
 }
 
-Result<std::vector<NamedFile>> LightsJob::maps() const {
+Result<std::vector<NamedFile>> LightsCalibration::maps() const {
   const std::vector<calibration::LightMap>* all = evidence_.per_pixel ? &evidence_.per_pixel->maps
                                                   : evidence_.seed    ? &evidence_.seed->maps
                                                                       : nullptr;
@@ -404,7 +404,7 @@ Result<std::vector<NamedFile>> LightsJob::maps() const {
   return files;
 }
 
-Result<CalibrateOutcome> LightsJob::write() {
+Result<CalibrateOutcome> LightsCalibration::write() {
   Calibration change;
   change.subject = calibration_.subject;
   change.subject.measured.clear();
@@ -464,7 +464,7 @@ void describe(Fields& fields, CalibrateLightsOptions& o) {
 }
 
 Result<CalibrateOutcome> calibrate_lights(const CalibrateLightsOptions& options, const JobContext& context) {
-  return LightsJob(options, context).run();
+  return LightsCalibration(options, context).run();
 }
 
 }  // namespace weft::app

@@ -87,7 +87,7 @@ class Submission {
     }
     const bool has_merge = !report_.queued.merges.empty();
     if (!report_.arrays.empty() || (!jobs_.empty() && !has_merge)) {
-      SubmittedJob merge = {"", {}, batch::merge_command(header_, options_.farm, places_, jobs_)};
+      SbatchCall merge = {"", {}, batch::merge_command(header_, options_.farm, places_, jobs_)};
       if (Result<void> ok = send(merge); !ok) return std::move(ok).error();
       report_.merge = std::move(merge);
     }
@@ -103,21 +103,21 @@ class Submission {
     const batch::FarmLimits limits = batch::limits_from(*config);
     for (batch::TaskArray& array : batch::arrays_of(header_, tasks, options_.farm.cores, limits)) {
       const std::vector<std::string> after = options_.farm.at_once > 0 ? jobs_ : std::vector<std::string>();
-      SubmittedJob job = {"", array, batch::array_command(header_, array, options_.farm, places_, after)};
-      if (Result<void> ok = send(job); !ok) return ok;
-      if (!job.job.empty()) jobs_.push_back(job.job);
-      report_.arrays.push_back(std::move(job));
+      SbatchCall call = {"", array, batch::array_command(header_, array, options_.farm, places_, after)};
+      if (Result<void> ok = send(call); !ok) return ok;
+      if (!call.job.empty()) jobs_.push_back(call.job);
+      report_.arrays.push_back(std::move(call));
     }
     return {};
   }
 
-  Result<void> send(SubmittedJob& job) const {
+  Result<void> send(SbatchCall& call) const {
     if (options_.dry_run) return {};
-    const Result<std::string> said = ask_slurm(job.command);
+    const Result<std::string> said = ask_slurm(call.command);
     if (!said) return said.error();
     Result<std::string> number = batch::job_from(*said);
     if (!number) return std::move(number).error();
-    job.job = std::move(*number);
+    call.job = std::move(*number);
     return {};
   }
 

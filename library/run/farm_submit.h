@@ -20,15 +20,15 @@ struct SubmitOptions {
   bool dry_run = false;  ///< only say what would be submitted
 };
 
-struct SubmittedJob {
-  std::string job;                   ///< its number; empty where it was not submitted
+struct SbatchCall {
+  std::string job;                   ///< number that Slurm gave; empty where it was not called
   batch::TaskArray array;            ///< none of the merge
   std::vector<std::string> command;  ///< sbatch and its arguments
 };
 
 struct SubmitReport {
-  std::vector<SubmittedJob> arrays;
-  std::optional<SubmittedJob> merge;
+  std::vector<SbatchCall> arrays;
+  std::optional<SbatchCall> merge;
   batch::Queue queued;  ///< before
   int missing = 0;      ///< tasks with a session without result
 };
