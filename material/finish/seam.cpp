@@ -6,10 +6,55 @@
 #include <cstddef>
 #include <vector>
 
-#include "material/finish/mean_repeat.h"
+#include "core/image/image.h"
 
 namespace weft::material {
 namespace {
+
+// The mean of a plane over all its repeats of `repeat_x` x `repeat_y` pixels. Places in the repeat are a
+// pixel wide at most.
+class MeanRepeat {
+ public:
+  MeanRepeat(double repeat_x, double repeat_y)
+      : repeat_x_(repeat_x),
+        repeat_y_(repeat_y),
+        columns_(std::max(1, static_cast<int>(std::ceil(repeat_x)))),
+        rows_(std::max(1, static_cast<int>(std::ceil(repeat_y)))),
+        count_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)),
+        sum_(count_.size()) {}
+
+  void add(View<const float> plane) {
+    std::vector<std::size_t> columns;
+    for (int x = 0; x < plane.width(); ++x) columns.push_back(column(x));
+    for (int y = 0; y < plane.height(); ++y) {
+      const std::size_t first = row(y);
+      for (int x = 0; x < plane.width(); ++x) {
+        const std::size_t i = first + columns[static_cast<std::size_t>(x)];
+        count_[i] += 1;
+        sum_[i] += static_cast<double>(plane(x, y));
+      }
+    }
+  }
+
+  // 0 where nothing was added.
+  double at(int x, int y) const {
+    const std::size_t i = row(y) + column(x);
+    return count_[i] > 0 ? sum_[i] / count_[i] : 0;
+  }
+
+ private:
+  static std::size_t place_in(int i, double repeat, int places) {
+    const double phase = i / repeat - std::floor(i / repeat);
+    return static_cast<std::size_t>(std::min(static_cast<int>(phase * places), places - 1));
+  }
+  std::size_t column(int x) const { return place_in(x, repeat_x_, columns_); }
+  // Index of its first place.
+  std::size_t row(int y) const { return place_in(y, repeat_y_, rows_) * static_cast<std::size_t>(columns_); }
+
+  double repeat_x_, repeat_y_;
+  int columns_, rows_;
+  std::vector<double> count_, sum_;
+};
 
 // One plane seen along the axis of a joint: places go on at its borders.
 class Line {
