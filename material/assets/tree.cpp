@@ -31,11 +31,11 @@ std::string where_of(const KeptValue& value, const std::string& key) {
   return value.from + ": " + key;
 }
 
-class TreePlanner {
+class TreeBuilder {
  public:
-  TreePlanner(const MaterialSource& source, DigestCache& digests) : source_(source), digests_(digests) {}
+  TreeBuilder(const MaterialSource& source, DigestCache& digests) : source_(source), digests_(digests) {}
 
-  Result<std::size_t> plan(const MaterialPlace& place) {
+  Result<std::size_t> add(const MaterialPlace& place) {
     const auto known = done_.find(place.name);
     if (known != done_.end()) return known->second;
     if (std::ranges::find(under_way_, place) != under_way_.end()) {
@@ -67,8 +67,8 @@ class TreePlanner {
     MaterialNode node;
     node.material = std::move(*material);
     node.name = name_of_node(node.material);
-    for (const auto step : {&TreePlanner::find_layers, &TreePlanner::find_maps, &TreePlanner::find_grid,
-                            &TreePlanner::find_fits, &TreePlanner::check_masks, &TreePlanner::find_id}) {
+    for (const auto step : {&TreeBuilder::find_layers, &TreeBuilder::find_maps, &TreeBuilder::find_grid,
+                            &TreeBuilder::find_fits, &TreeBuilder::check_masks, &TreeBuilder::find_id}) {
       if (Result<void> ok = (this->*step)(node); !ok) return std::move(ok).error();
     }
     return node;
@@ -90,7 +90,7 @@ class TreePlanner {
       error.where = where_of(written, "[[layer]] " + layer.name + ": material: " + error.where);
       return error;
     }
-    return plan(*place);
+    return add(*place);
   }
 
   Result<void> find_layers(MaterialNode& node) {
@@ -372,14 +372,14 @@ class TreePlanner {
 
 Result<MaterialTree> plan_materials(const std::vector<MaterialPlace>& roots, const MaterialSource& source,
                                     DigestCache& digests) {
-  TreePlanner planner(source, digests);
+  TreeBuilder builder(source, digests);
   std::vector<std::size_t> nodes;
   for (const MaterialPlace& root : roots) {
-    const Result<std::size_t> node = planner.plan(root);
+    const Result<std::size_t> node = builder.add(root);
     if (!node) return node.error();
     nodes.push_back(*node);
   }
-  return planner.take(std::move(nodes));
+  return builder.take(std::move(nodes));
 }
 
 Json scans_of(const MaterialTree& tree, std::size_t index) {
