@@ -30,7 +30,7 @@ void print_words(const MapsReport& report) {
       print(fmt::format("  {}: {:.4g}{}, {}", map.name, *map.constant, unit, map.why));
     } else {
       print(fmt::format("  {}: {:.4g} to {:.4g}{}, {}", map.name, map.least, map.most, unit,
-                        kMapSourceNames[static_cast<std::size_t>(map.source)]));
+                        name_of(map.source)));
     }
   }
   for (const Verdict& verdict : facts.verdicts)

@@ -50,13 +50,6 @@ const std::vector<WrittenMap>& plain_maps() {
   return maps;
 }
 
-MapSource source_named(const std::string& name) {
-  const auto* found =
-      std::ranges::find(kMapSourceNames, name, [](const char* each) { return std::string(each); });
-  return found == kMapSourceNames.end() ? MapSource::kAssumed
-                                        : static_cast<MapSource>(found - kMapSourceNames.begin());
-}
-
 Image<float> filled_map(const ParameterField& field, Size size) {
   if (field.is_map()) return std::move(material::copy_of(field).map);
   Image<float> map(size, field.planes);
@@ -126,7 +119,7 @@ class Composer {
     surface_.slope = filled_map(*slopes, node_.size);
     surface_.status = Image<std::uint16_t>(node_.size);
     return write(
-        {.name = "normal", .channels = {"X", "Y", "Z"}, .source = source_named(stack_.source(kNormal))},
+        {.name = "normal", .channels = {"X", "Y", "Z"}, .source = map_source_named(stack_.source(kNormal))},
         normals_of(surface_.slope));
   }
 
@@ -148,7 +141,7 @@ class Composer {
       Result<void> ok = write({.name = map.name,
                                .unit = map.unit,
                                .channels = map.channels,
-                               .source = source_named(stack_.source(map.parameter))},
+                               .source = map_source_named(stack_.source(map.parameter))},
                               field->map);
       if (!ok) return ok;
     }
@@ -165,7 +158,7 @@ class Composer {
     Result<void> ok = write({.name = "opacity",
                              .unit = "share",
                              .channels = {"opacity"},
-                             .source = source_named(stack_.source(kOpacity))},
+                             .source = map_source_named(stack_.source(kOpacity))},
                             field->map);
     surface_.opacity = std::move(field->map);
     return ok;
@@ -183,7 +176,7 @@ class Composer {
     const std::string source = stack_.source(kRoughness);
     MapFacts facts = {.name = "roughness",
                       .channels = {"roughness", "alpha", "alpha_along", "yarn_deg"},
-                      .source = source_named(source)};
+                      .source = map_source_named(source)};
     facts.more = {{"scale", material::name_of(material::GlossScale::kRoughness)}};
     if (is_round) note_parameter(kAnisotropy, *axis);
     if (is_round && !roughness->is_map()) {
@@ -235,7 +228,7 @@ class Composer {
     MapFacts facts = {.name = "specular",
                       .unit = "share",
                       .channels = {"f0"},
-                      .source = source_named(stack_.source(kSpecular))};
+                      .source = map_source_named(stack_.source(kSpecular))};
     if (specular.is_map()) return write(std::move(facts), specular.map);
     facts.constant = specular.constant[0];
     facts.channels.clear();
@@ -262,7 +255,7 @@ class Composer {
       Result<void> ok = write({.name = "cloth",
                                .unit = "share",
                                .channels = {"cloth"},
-                               .source = source_named(stack_.source(kCloth))},
+                               .source = map_source_named(stack_.source(kCloth))},
                               cloth->map);
       if (!ok) return ok;
     }
@@ -270,7 +263,7 @@ class Composer {
     return write({.name = "sheen",
                   .unit = "share",
                   .channels = {"R", "G", "B"},
-                  .source = source_named(stack_.source(kSheen))},
+                  .source = map_source_named(stack_.source(kSheen))},
                  filled_map(*sheen, node_.size));
   }
 
@@ -296,7 +289,7 @@ class Composer {
     return write({.name = "albedo",
                   .unit = "share",
                   .channels = {"R", "G", "B"},
-                  .source = source_named(stack_.source(kAlbedo))},
+                  .source = map_source_named(stack_.source(kAlbedo))},
                  surface_.albedo);
   }
 

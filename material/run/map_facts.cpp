@@ -10,6 +10,16 @@
 
 namespace weft::app {
 
+const char* name_of(MapSource source) {
+  return kMapSourceNames[static_cast<std::size_t>(source)];
+}
+
+MapSource map_source_named(std::string_view name) {
+  const auto* const found = std::ranges::find(kMapSourceNames, name);
+  return found == kMapSourceNames.end() ? MapSource::kAssumed
+                                        : static_cast<MapSource>(found - kMapSourceNames.begin());
+}
+
 void describe(Fields& fields, MapFacts& f) {
   fields.keep(f.document);
   fields.value({"name", "Which map", {}, kMustSay}, f.name);
@@ -36,7 +46,7 @@ Json json_of(const MapFacts& facts) {
 
 ImageAttributes attributes_of(const MapFacts& facts, double mm_per_pixel) {
   ImageAttributes attributes = {
-      {"weft.source", kMapSourceNames[static_cast<std::size_t>(facts.source)]},
+      {"weft.source", name_of(facts.source)},
   };
   if (mm_per_pixel > 0) attributes["weft.mm_per_pixel"] = fmt::format("{:.9g}", mm_per_pixel);
   if (!facts.unit.empty()) attributes["weft.unit"] = facts.unit;

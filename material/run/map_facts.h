@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/json_document.h"
@@ -20,6 +21,9 @@ enum class MapSource {
   kAssumed    ///< typed, since the photographs do not tell it
 };
 inline constexpr std::array<const char*, 3> kMapSourceNames = {"measured", "derived", "assumed"};
+const char* name_of(MapSource source);
+/// What has another name is assumed.
+MapSource map_source_named(std::string_view name);
 
 /// What maps.json says of a map.
 struct MapFacts {

@@ -30,7 +30,7 @@ report::Table table_of(const std::vector<MapFacts>& maps) {
       table.rows.push_back({map.name, "", number_text(*map.constant), "", map.unit, map.why});
     } else {
       table.rows.push_back({map.name, number_text(map.least), number_text(map.mean), number_text(map.most),
-                            map.unit, kMapSourceNames[static_cast<std::size_t>(map.source)]});
+                            map.unit, name_of(map.source)});
     }
   }
   return table;
