@@ -19,8 +19,8 @@ using FileBytes = std::map<std::string, std::string_view, std::less<>>;
 /// A document of a material. The bytes depend on the material and the options alone.
 struct Document {
   std::string bytes;
-  std::vector<std::string> files;     ///< that it names, each once, in the order it names them
-  std::vector<std::string> left_out;  ///< what the format cannot hold, a sentence each
+  std::vector<std::string> files = {};     ///< that it names, each once, in the order it names them
+  std::vector<std::string> left_out = {};  ///< what the format cannot hold, a sentence each
 };
 
 /// Whether `path` is a relative path that any system can hold: parts of 1 to 255 bytes of UTF-8 between "/",

@@ -14,7 +14,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "exchange/export/export_json.h"
+#include "exchange/export/export.h"
 #include "exchange/export/export_request.h"
 #include "exchange/export/preset_files.h"
 #include "exchange/export/price.h"
@@ -77,7 +77,7 @@ void print_report(const ExportReport& report) {
     print(fmt::format("  {}: {}, {:.2f} MB{}", file.file, file.encoding,
                       static_cast<double>(file.bytes) * 1e-6, lost_words(file.lost)));
   }
-  for (const WrittenDocument& document : facts.documents) {
+  for (const ExportedDocument& document : facts.documents) {
     print(fmt::format("  {}: {:.2f} MB", document.name, static_cast<double>(document.bytes) * 1e-6));
     for (const std::string& left_out : document.left_out) print("    " + left_out);
   }

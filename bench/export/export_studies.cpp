@@ -377,7 +377,7 @@ Result<void> make_tile(const StudyOptions& options, const TileMaps& tile) {
 double megabytes_of(const app::ExportFacts& facts) {
   std::uint64_t bytes = 0;
   for (const app::ExportedTexture& each : facts.files) bytes += each.inside.empty() ? each.bytes : 0;
-  for (const app::WrittenDocument& each : facts.documents) bytes += each.bytes;
+  for (const app::ExportedDocument& each : facts.documents) bytes += each.bytes;
   return static_cast<double>(bytes) * 1e-6;
 }
 

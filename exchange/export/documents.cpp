@@ -4,17 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "core/base/files.h"
 #include "core/base/sha256.h"
+#include "core/image_io/image_io.h"
 #include "exchange/document.h"
-#include "exchange/export/textured.h"
 #include "exchange/gltf/glb.h"
 #include "exchange/materialx/materialx.h"
 #include "exchange/u3m/u3m.h"
@@ -28,11 +28,11 @@ using exchange::Document;
 using exchange::DocumentKind;
 
 constexpr std::size_t kMostTextureBytes = std::size_t{1} << 32;
+constexpr const char* kWeightsFile = "layers/weights.png";
 
-// What the documents of one plan are made of.
+// What the documents of one preset are made of.
 struct DocumentInput {
-  const PlannedExport& plan;
-  const MapFolder& maps;
+  const ClothTextures& cloth;
   const fs::path& folder;
   exchange::TexturedMaterial material;
   exchange::FileBytes bytes;  ///< of textures, where a document holds them
@@ -55,10 +55,10 @@ std::string text_in(const Json& metadata, const char* key) {
 exchange::U3mOptions u3m_options(const DocumentInput& input) {
   exchange::U3mOptions options;
   options.description = "Scanned with weft";
-  options.digest = sha256_of(input.plan.inputs.dump());
+  options.digest = sha256_of(input.cloth.preset.inputs.dump());
   options.created = options.modified = "1970-01-01T00:00:00Z";
-  if (!input.maps.session) return options;
-  const Json& session = input.maps.session->document;
+  if (!input.cloth.maps.session) return options;
+  const Json& session = input.cloth.maps.session->document;
   if (const std::string created = text_in(session, "created"); !created.empty())
     options.created = options.modified = created;
   if (!session.contains("metadata") || !session["metadata"].is_object()) return options;
@@ -78,7 +78,7 @@ Result<Document> materialx(const DocumentInput& input) {
 
 Result<Document> usda(const DocumentInput& input) {
   exchange::UsdOptions options;
-  for (const PlannedDocument& each : input.plan.documents) {
+  for (const exchange::PresetDocument& each : input.cloth.preset.documents) {
     if (each.kind == DocumentKind::kMaterialX) options.materialx_file = each.name;
   }
   return exchange::usda_of(input.material, options);
@@ -95,8 +95,8 @@ Result<Document> packed(Result<Document> inner, const DocumentInput& input, cons
   return inner;
 }
 
-Result<Document> document_bytes(const PlannedDocument& planned, const DocumentInput& input) {
-  switch (planned.kind) {
+Result<Document> document_bytes(const exchange::PresetDocument& asked, const DocumentInput& input) {
+  switch (asked.kind) {
     case DocumentKind::kGlb:
       return exchange::glb_of(input.material, input.bytes);
     case DocumentKind::kMaterialX:
@@ -104,70 +104,173 @@ Result<Document> document_bytes(const PlannedDocument& planned, const DocumentIn
     case DocumentKind::kUsda:
       return usda(input);
     case DocumentKind::kUsdz:
-      return packed(exchange::usda_of(input.material), input, planned.name);
+      return packed(exchange::usda_of(input.material), input, asked.name);
     case DocumentKind::kU3m:
       return exchange::u3m_of(input.material, u3m_options(input));
     case DocumentKind::kU3ma:
-      return packed(exchange::u3m_of(input.material, u3m_options(input)), input, planned.name);
+      return packed(exchange::u3m_of(input.material, u3m_options(input)), input, asked.name);
     case DocumentKind::kLayers:
       break;
   }
-  return Error{ErrorKind::kInternal, "a document has no writer", planned.name, "", ""};
+  return Error{ErrorKind::kInternal, "a document has no writer", asked.name, "", ""};
 }
 
-Result<WrittenDocument> write_document(const PlannedDocument& planned, const DocumentInput& input) {
-  Result<Document> document = document_bytes(planned, input);
+// `document` as a file of the folder, and what export.json says of it.
+Result<ExportedDocument> written(const fs::path& folder, const std::string& name, const char* kind,
+                                 Document document) {
+  if (Result<void> ok = write_file(folder / name, document.bytes); !ok) return std::move(ok).error();
+  return ExportedDocument{.name = name,
+                          .kind = kind,
+                          .sha256 = sha256_of(document.bytes),
+                          .bytes = document.bytes.size(),
+                          .files = std::move(document.files),
+                          .left_out = std::move(document.left_out)};
+}
+
+Result<ExportedDocument> write_document(const exchange::PresetDocument& asked, const DocumentInput& input) {
+  Result<Document> document = document_bytes(asked, input);
   if (!document) {
     Error error = std::move(document).error();
-    error.where = fmt::format("preset {}: {}: {}", input.plan.preset.name, planned.name, error.where);
+    error.where = fmt::format("preset {}: {}: {}", input.cloth.preset.preset.name, asked.name, error.where);
     return error;
   }
-  if (Result<void> ok = write_file(input.folder / planned.name, document->bytes); !ok)
-    return std::move(ok).error();
-  return WrittenDocument{.name = planned.name,
-                         .kind = exchange::kDocumentKindNames[static_cast<std::size_t>(planned.kind)],
-                         .sha256 = sha256_of(document->bytes),
-                         .bytes = document->bytes.size(),
-                         .files = std::move(document->files),
-                         .left_out = std::move(document->left_out)};
+  return written(input.folder, asked.name, exchange::kDocumentKindNames[static_cast<std::size_t>(asked.kind)],
+                 std::move(*document));
 }
 
 // Textures that stand inside of documents alone, and the folders that they leave empty.
-void remove_textures(const std::vector<EncodedFile>& files, const fs::path& folder) {
+void remove_textures(const std::vector<ExportedTexture>& textures, const fs::path& folder) {
   std::error_code ignored;
-  for (const EncodedFile& file : files) fs::remove(folder / file.name, ignored);
-  for (const EncodedFile& file : files) {
-    const fs::path parent = (folder / file.name).parent_path();
+  for (const ExportedTexture& each : textures) fs::remove(folder / each.file, ignored);
+  for (const ExportedTexture& each : textures) {
+    const fs::path parent = (folder / each.file).parent_path();
     if (parent != folder && fs::is_empty(parent, ignored)) fs::remove(parent, ignored);
   }
 }
 
+// Weights as 8 bits, which are what vertex colours have too; nothing where those are the weights.
+Result<std::optional<exchange::Texture>> write_weights(const RuntimeStack& stack, const fs::path& folder) {
+  if (stack.weights == "vertex-color") return std::optional<exchange::Texture>();
+  const Result<LoadedImage> image = read_image(stack.layers.front().folder / stack.weights);
+  if (!image) return image.error();
+  const std::vector<View<const float>> planes = {image->channel("R"), image->channel("G"),
+                                                 image->channel("B")};
+  if (planes[0].empty() || planes[1].empty() || planes[2].empty()) {
+    return Error{ErrorKind::kBadData, "the weights of layers cannot be exported", stack.weights,
+                 "it has no R, G and B", "build the material again"};
+  }
+  if (Result<void> ok = make_writable_folder(folder / "layers"); !ok) return std::move(ok).error();
+  const WriteOptions options = {.type = SampleType::kUint8, .compression = Compression::kZip};
+  if (Result<void> ok = write_image(folder / kWeightsFile, planes, {"R", "G", "B"}, options); !ok)
+    return std::move(ok).error();
+  return std::optional<exchange::Texture>(
+      {.file = kWeightsFile, .size = image->info.size, .bits = 8, .channels = "rgb"});
+}
+
+// What is one number everywhere.
+bool is_plain(const std::vector<ExportedTexture>& textures) {
+  return std::ranges::all_of(textures, [](const ExportedTexture& texture) {
+    return std::ranges::all_of(texture.channels,
+                               [](const ExportedChannel& channel) { return channel.least == channel.most; });
+  });
+}
+
+// Of all layers, bottom to top.
+std::vector<exchange::TexturedMaterial> materials_of(const exchange::TexturedMaterial& lowest,
+                                                     const ClothLayers& layers) {
+  std::vector<exchange::TexturedMaterial> materials = {lowest};
+  for (const ClothTextures& layer : layers.above) {
+    materials.push_back(textured_material(layer));
+    // What is the same everywhere covers any rectangle.
+    if (!materials.back().size_mm && is_plain(layer.textures)) materials.back().size_mm = lowest.size_mm;
+  }
+  return materials;
+}
+
+std::map<std::string, std::vector<std::string>> files_by_id(const ClothTextures& cloth,
+                                                            const ClothLayers& layers) {
+  std::map<std::string, std::vector<std::string>> files;
+  const auto add = [&](const ClothTextures& each) {
+    std::vector<std::string>& names = files[each.maps.id];
+    names.clear();
+    for (const ExportedTexture& texture : each.textures) names.push_back(texture.file);
+  };
+  add(cloth);
+  for (const ClothTextures& layer : layers.above) add(layer);
+  return files;
+}
+
+// What engines and MaterialX need to mix the layers.
+Result<std::vector<ExportedDocument>> write_layers(const std::string& list_name, const ClothLayers& layers,
+                                                   const DocumentInput& input) {
+  const std::string& name = input.cloth.preset.name;
+  std::vector<ExportedDocument> documents;
+  const auto write = [&](const std::string& file, const char* kind, Document document) {
+    Result<ExportedDocument> done = written(input.folder, file, kind, std::move(document));
+    if (done) documents.push_back(std::move(*done));
+    return done ? Result<void>() : Result<void>(std::move(done).error());
+  };
+  const Result<std::optional<exchange::Texture>> weights = write_weights(layers.stack, input.folder);
+  if (!weights) return weights.error();
+  Result<Document> mix =
+      exchange::materialx_mix_of(name, materials_of(input.material, layers), {*weights}, {});
+  if (!mix) return std::move(mix).error();
+  if (Result<void> ok = write(name + "_layers.mtlx", "mtlx", std::move(*mix)); !ok)
+    return std::move(ok).error();
+  RuntimeStack shown = layers.stack;
+  if (*weights) {
+    Result<std::string> bytes = read_text(input.folder / kWeightsFile);
+    if (!bytes) return std::move(bytes).error();
+    if (Result<void> ok = write(kWeightsFile, "weights", {.bytes = std::move(*bytes)}); !ok)
+      return std::move(ok).error();
+    shown.weights = kWeightsFile;
+  }
+  const std::map<std::string, std::vector<std::string>> files = files_by_id(input.cloth, layers);
+  Document list = {.bytes = layers_json(shown, files).dump(2) + "\n"};
+  for (const auto& [id, names] : files) list.files.insert(list.files.end(), names.begin(), names.end());
+  if (Result<void> ok = write(list_name, "layers", std::move(list)); !ok) return std::move(ok).error();
+  return documents;
+}
+
+// The textures' bytes, where a document holds them.
+Result<std::map<std::string, std::string>> held_bytes(const ClothTextures& cloth, const fs::path& folder) {
+  std::map<std::string, std::string> held;
+  const bool holds = std::ranges::any_of(cloth.preset.documents, [](const exchange::PresetDocument& each) {
+    return exchange::holds_its_files(each.kind);
+  });
+  if (!holds) return held;
+  for (const ExportedTexture& texture : cloth.textures) {
+    Result<std::string> bytes = read_text(folder / texture.file, kMostTextureBytes);
+    if (!bytes) return std::move(bytes).error();
+    held[texture.file] = std::move(*bytes);
+  }
+  return held;
+}
+
 }  // namespace
 
-Result<std::vector<WrittenDocument>> write_documents(const PlannedExport& plan, const MapFolder& maps,
-                                                     const std::vector<EncodedFile>& files,
-                                                     const fs::path& folder) {
-  std::vector<WrittenDocument> written;
-  if (plan.documents.empty()) return written;
-  DocumentInput input = {plan, maps, folder, textured_material(plan, maps, files), {}};
-  std::map<std::string, std::string> held;
-  const bool holds = std::ranges::any_of(
-      plan.documents, [](const PlannedDocument& each) { return exchange::holds_its_files(each.kind); });
-  for (const EncodedFile& file : files) {
-    if (!holds) break;
-    Result<std::string> bytes = read_text(folder / file.name, kMostTextureBytes);
-    if (!bytes) return std::move(bytes).error();
-    held[file.name] = std::move(*bytes);
-  }
-  for (const auto& [name, bytes] : held) input.bytes.emplace(name, bytes);
-  for (const PlannedDocument& planned : plan.documents) {
-    if (planned.kind == DocumentKind::kLayers) continue;
-    Result<WrittenDocument> document = write_document(planned, input);
+Result<std::vector<ExportedDocument>> write_documents(const ClothTextures& cloth, const ClothLayers& layers,
+                                                      const fs::path& folder) {
+  std::vector<ExportedDocument> documents;
+  const FilledPreset& preset = cloth.preset;
+  if (preset.documents.empty()) return documents;
+  const Result<std::map<std::string, std::string>> held = held_bytes(cloth, folder);
+  if (!held) return held.error();
+  const DocumentInput input = {cloth, folder, textured_material(cloth), {held->begin(), held->end()}};
+  for (const exchange::PresetDocument& asked : preset.documents) {
+    if (asked.kind == DocumentKind::kLayers) continue;
+    Result<ExportedDocument> document = write_document(asked, input);
     if (!document) return std::move(document).error();
-    written.push_back(std::move(*document));
+    documents.push_back(std::move(*document));
   }
-  if (plan.preset.keeps_no_files()) remove_textures(files, folder);
-  return written;
+  if (preset.preset.keeps_no_files()) remove_textures(cloth.textures, folder);
+  for (const exchange::PresetDocument& asked : preset.documents) {
+    if (asked.kind != DocumentKind::kLayers) continue;
+    Result<std::vector<ExportedDocument>> mixed = write_layers(asked.name, layers, input);
+    if (!mixed) return mixed;
+    std::ranges::move(*mixed, std::back_inserter(documents));
+  }
+  return documents;
 }
 
 }  // namespace weft::app

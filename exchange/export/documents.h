@@ -5,18 +5,23 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "exchange/export/encode_files.h"
-#include "exchange/export/export_json.h"
-#include "exchange/export/map_folder.h"
-#include "exchange/export/plan.h"
+#include "exchange/export/textured.h"
+#include "exchange/presets/export_facts.h"
+#include "material/assets/runtime.h"
 
 namespace weft::app {
 
-/// Writes the documents of a plan, but for `layers` (write_layers()), beside its textures, which are in
-/// `folder` already. Errors of the writers (exchange/gltf, materialx, usd, u3m), with the preset and the
-/// document as `where`.
-Result<std::vector<WrittenDocument>> write_documents(const PlannedExport& plan, const MapFolder& maps,
-                                                     const std::vector<EncodedFile>& files,
-                                                     const std::filesystem::path& folder);
+/// The layers of a material that is mixed while it is drawn.
+struct ClothLayers {
+  const RuntimeStack& stack;
+  std::vector<ClothTextures> above;  ///< all of the stack but the lowest, which is the cloth itself
+};
+
+/// Writes the documents of a preset beside its textures, which are in `folder` already, and takes away
+/// textures that stand inside of documents alone. One of `layers` (weft.layers/1, for engines) has two more
+/// beside it: NAME_layers.mtlx with a mix of surface shaders, and the layers' weights where they are a map.
+/// Errors of the writers (exchange/gltf, materialx, usd, u3m), with the preset and the document as `where`.
+Result<std::vector<ExportedDocument>> write_documents(const ClothTextures& cloth, const ClothLayers& layers,
+                                                      const std::filesystem::path& folder);
 
 }  // namespace weft::app

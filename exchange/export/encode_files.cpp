@@ -24,42 +24,95 @@ using exchange::Plane;
 
 // One texture to encode, and everywhere it goes: the first place is written, the others are copies.
 struct Task {
-  const PlannedExport* plan = nullptr;
-  const PlannedFile* planned = nullptr;
-  std::vector<std::pair<std::size_t, std::size_t>> places;  ///< target, index in its plan
+  const FilledPreset* preset = nullptr;
+  const TextureToWrite* texture = nullptr;
+  std::vector<std::pair<std::size_t, std::size_t>> places = {};  ///< target, index in its preset
+  double seconds = 0;                                            ///< to pack, encode and write it once
 };
 
 // What makes two textures alike, whatever preset asks for them.
-std::string key_of(const PlannedExport& plan, const exchange::PresetFile& file) {
+std::string key_of(const FilledPreset& filled, const exchange::PresetFile& file) {
   const bool has_roughness = std::ranges::any_of(
       file.channels, [](const std::string& channel) { return channel.starts_with("roughness"); });
   return fmt::format(
-      "{}x{} {} {} {} {} {} {}", plan.size.width, plan.size.height, fmt::join(file.channels, ","),
+      "{}x{} {} {} {} {} {} {}", filled.size.width, filled.size.height, fmt::join(file.channels, ","),
       words_of(file.stored), static_cast<int>(file.stored.color), file.stored.is_prman,
-      static_cast<int>(file.direction), has_roughness ? static_cast<int>(plan.preset.roughness) : -1);
+      static_cast<int>(file.direction), has_roughness ? static_cast<int>(filled.preset.roughness) : -1);
 }
 
 std::vector<Task> tasks_of(const std::vector<EncodeTarget>& targets) {
   std::vector<Task> tasks;
   std::map<std::string, std::size_t> by_key;
   for (std::size_t t = 0; t < targets.size(); ++t) {
-    const PlannedExport& plan = *targets[t].plan;
-    for (std::size_t i = 0; i < plan.files.size(); ++i) {
-      const auto [found, is_new] = by_key.emplace(key_of(plan, plan.files[i].file), tasks.size());
-      if (is_new) tasks.push_back({&plan, &plan.files[i], {}});
+    const FilledPreset& preset = *targets[t].preset;
+    for (std::size_t i = 0; i < preset.textures.size(); ++i) {
+      const auto [found, is_new] = by_key.emplace(key_of(preset, preset.textures[i].file), tasks.size());
+      if (is_new) tasks.push_back({.preset = &preset, .texture = &preset.textures[i]});
       tasks[found->second].places.emplace_back(t, i);
     }
   }
   return tasks;
 }
 
-std::set<Plane> planes_of(const PlannedFile& planned) {
+std::set<Plane> planes_of(const TextureToWrite& texture) {
   std::set<Plane> planes;
-  for (const std::string& name : planned.file.channels) {
+  for (const std::string& name : texture.file.channels) {
     const std::vector<Plane>& needed = exchange::channel_named(name)->planes;
     planes.insert(needed.begin(), needed.end());
   }
   return planes;
+}
+
+bool has_any(const exchange::PresetFile& file, std::initializer_list<const char*> channels) {
+  return std::ranges::any_of(channels, [&](const char* channel) {
+    return std::ranges::find(file.channels, channel) != file.channels.end();
+  });
+}
+
+ExportedChannel exported_channel(const TextureInput& input, const exchange::ChannelLoss& loss) {
+  const exchange::Channel& channel = *exchange::channel_named(loss.channel);
+  ExportedChannel facts = {
+      .name = loss.channel,
+      .unit = channel.unit,
+      .least = loss.least,
+      .most = loss.most,
+      .mean = loss.mean,
+      .lost = {loss.mean_abs, loss.most_abs},
+      .cut_share = static_cast<double>(loss.cut) / static_cast<double>(input.size.pixels())};
+  if (input.file.stored.is_float()) return facts;
+  const exchange::ChannelRange range = exchange::range_of(channel, input.facts);
+  facts.at_0 = range.least;
+  facts.at_1 = range.most;
+  return facts;
+}
+
+// But for its name and its bytes.
+ExportedTexture exported_texture(const TextureInput& input, exchange::Loss loss) {
+  const exchange::PresetFile& file = input.file;
+  ExportedTexture facts = {.size = input.size,
+                           .levels = levels_of(file, input.size),
+                           .encoding = words_of(file.stored),
+                           .color = file.stored.color};
+  if (has_any(file, {"normal.y", "detail.normal.y"}))
+    facts.direction = exchange::kNormalDirectionNames[static_cast<std::size_t>(file.direction)];
+  if (has_any(file, {"roughness", "roughness.least"}))
+    facts.roughness = exchange::kRoughnessConventionNames[static_cast<std::size_t>(input.facts.roughness)];
+  for (const exchange::ChannelLoss& channel : loss.channels)
+    facts.channels.push_back(exported_channel(input, channel));
+  facts.lost = std::move(loss);
+  return facts;
+}
+
+// By the file as it reads back.
+Result<exchange::Loss> loss_of(const fs::path& path, const TextureInput& input, int threads) {
+  Result<Image<float>> read = read_texture(path, input, threads);
+  if (!read) return std::move(read).error();
+  exchange::Loss loss = exchange::measure_loss(input.file, input.planes, input.facts, std::move(*read));
+  if (levels_of(input.file, input.size) == 1) {
+    loss.by_distance =
+        exchange::loss_by_distance(input.file, input.planes, input.facts, input.lobe, input.size, threads);
+  }
+  return loss;
 }
 
 class Encoder {
@@ -67,108 +120,105 @@ class Encoder {
   Encoder(const MapFolder& folder, const std::vector<EncodeTarget>& targets, bool is_dx10,
           const JobContext& context)
       : folder_(folder), targets_(targets), is_dx10_(is_dx10), context_(context), tasks_(tasks_of(targets)) {
-    for (const EncodeTarget& target : targets) encoded_.emplace_back(target.plan->files.size());
+    for (const EncodeTarget& target : targets)
+      encoded_.emplace_back().textures.resize(target.preset->textures.size());
   }
 
-  Result<std::vector<std::vector<EncodedFile>>> run();
+  Result<std::vector<EncodedTextures>> run();
 
  private:
-  Result<void> run_together(const std::vector<const Task*>& tasks, Size size);
-  Result<void> run_one(const Task& task, const MapPlanes& planes, const exchange::ChannelFacts& facts,
-                       int threads);
-  Result<void> copy(const Task& task, const EncodedFile& first);
-  fs::path path_of(std::pair<std::size_t, std::size_t> place) const {
-    return targets_[place.first].folder / targets_[place.first].plan->files[place.second].name;
+  Result<void> run_together(const std::vector<Task*>& tasks, Size size);
+  Result<void> run_one(Task& task, const MapPlanes& planes, const exchange::ChannelFacts& facts, int threads);
+  Result<void> copy(const Task& task, const ExportedTexture& first);
+  const std::string& name_at(std::pair<std::size_t, std::size_t> place) const {
+    return targets_[place.first].preset->textures[place.second].name;
   }
-  bool fits_memory(const std::vector<const Task*>& tasks, Size size) const;
+  fs::path path_of(std::pair<std::size_t, std::size_t> place) const {
+    return targets_[place.first].folder / name_at(place);
+  }
+  ExportedTexture& texture_at(std::pair<std::size_t, std::size_t> place) {
+    return encoded_[place.first].textures[place.second];
+  }
+  bool fits_memory(const std::vector<Task*>& tasks, Size size) const;
 
   const MapFolder& folder_;
   const std::vector<EncodeTarget>& targets_;
   bool is_dx10_;
   const JobContext& context_;
   std::vector<Task> tasks_;
-  std::vector<std::vector<EncodedFile>> encoded_;
+  std::vector<EncodedTextures> encoded_;
   std::atomic<int> done_ = 0;
 };
 
-bool Encoder::fits_memory(const std::vector<const Task*>& tasks, Size size) const {
+bool Encoder::fits_memory(const std::vector<Task*>& tasks, Size size) const {
   std::set<Plane> all;
-  for (const Task* task : tasks) all.merge(planes_of(*task->planned));
+  for (const Task* task : tasks) all.merge(planes_of(*task->texture));
   const std::uint64_t planes =
       all.size() + 12 * static_cast<std::uint64_t>(resolved_threads(context_.threads));
   return planes * 4 * static_cast<std::uint64_t>(size.pixels()) < available_memory_bytes() / 3;
 }
 
-Result<void> Encoder::copy(const Task& task, const EncodedFile& first) {
+Result<void> Encoder::copy(const Task& task, const ExportedTexture& first) {
   for (std::size_t i = 1; i < task.places.size(); ++i) {
-    const auto [target, index] = task.places[i];
     const fs::path path = path_of(task.places[i]);
     if (Result<void> ok = make_writable_folder(path.parent_path()); !ok) return ok;
     std::error_code failed;
     fs::copy_file(path_of(task.places.front()), path, failed);
     if (failed) return cannot_write(path, failed.value());
-    EncodedFile& copied = encoded_[target][index];
+    ExportedTexture& copied = texture_at(task.places[i]);
     copied = first;
-    copied.file = targets_[target].plan->files[index].file;
-    copied.name = targets_[target].plan->files[index].name;
-    copied.seconds = 0;
+    copied.file = name_at(task.places[i]);
   }
   return {};
 }
 
-Result<void> Encoder::run_one(const Task& task, const MapPlanes& planes, const exchange::ChannelFacts& facts,
+Result<void> Encoder::run_one(Task& task, const MapPlanes& planes, const exchange::ChannelFacts& facts,
                               int threads) {
   if (context_.stop.stop_requested()) return interrupted();
   const fs::path path = path_of(task.places.front());
   if (Result<void> ok = make_writable_folder(path.parent_path()); !ok) return ok;
-  EncodedFile encoded = {.file = task.planned->file, .name = task.planned->name, .size = task.plan->size};
-  encoded.facts = facts;
-  encoded.facts.roughness = task.plan->preset.roughness;
-  encoded.facts.direction = task.planned->file.direction;
-  encoded.levels = levels_of(encoded.file, encoded.size);
-  const TextureInput input = {.file = encoded.file,
-                              .planes = planes.planes(),
-                              .facts = encoded.facts,
-                              .lobe = planes.lobe(),
-                              .size = encoded.size,
-                              .pitch_mm = task.plan->pitch_mm,
-                              .is_tile = folder_.is_tile,
-                              .is_dx10 = is_dx10_,
-                              .attributes = {{"weft." + folder_.kind, folder_.id}}};
+  const exchange::PresetFile& file = task.texture->file;
+  TextureInput input = {.file = file,
+                        .planes = planes.planes(),
+                        .facts = facts,
+                        .lobe = planes.lobe(),
+                        .size = task.preset->size,
+                        .pitch_mm = task.preset->pitch_mm,
+                        .is_tile = folder_.is_tile,
+                        .is_dx10 = is_dx10_,
+                        .attributes = {{"weft." + folder_.kind, folder_.id}}};
+  input.facts.roughness = task.preset->preset.roughness;
+  input.facts.direction = file.direction;
   Stopwatch watch;
   if (Result<void> ok = write_texture(path, input, threads); !ok) return ok;
-  encoded.seconds = watch.lap();
-  Result<Image<float>> read = read_texture(path, input, threads);
-  if (!read) return std::move(read).error();
-  encoded.loss = exchange::measure_loss(encoded.file, input.planes, input.facts, std::move(*read));
-  if (encoded.levels == 1) {
-    encoded.loss.by_distance = exchange::loss_by_distance(encoded.file, input.planes, input.facts, input.lobe,
-                                                          encoded.size, threads);
-  }
+  task.seconds = watch.lap();
+  Result<exchange::Loss> loss = loss_of(path, input, threads);
+  if (!loss) return std::move(loss).error();
+  ExportedTexture texture = exported_texture(input, std::move(*loss));
+  texture.file = task.texture->name;
   Result<std::string> digest = sha256_of_file(path);
   if (!digest) return std::move(digest).error();
-  encoded.sha256 = std::move(*digest);
+  texture.sha256 = std::move(*digest);
   std::error_code failed;
-  encoded.bytes = fs::file_size(path, failed);
-  if (Result<void> ok = copy(task, encoded); !ok) return ok;
-  const auto [target, index] = task.places.front();
-  encoded_[target][index] = std::move(encoded);
+  texture.bytes = fs::file_size(path, failed);
+  if (Result<void> ok = copy(task, texture); !ok) return ok;
+  texture_at(task.places.front()) = std::move(texture);
   context_.progress("encode", static_cast<double>(++done_) / static_cast<double>(tasks_.size()));
   return {};
 }
 
-Result<void> Encoder::run_together(const std::vector<const Task*>& tasks, Size size) {
+Result<void> Encoder::run_together(const std::vector<Task*>& tasks, Size size) {
   MapPlanes planes(folder_, size, context_.threads);
   if (!fits_memory(tasks, size)) {
-    for (const Task* task : tasks) {
-      if (Result<void> ok = planes.load(planes_of(*task->planned)); !ok) return ok;
+    for (Task* task : tasks) {
+      if (Result<void> ok = planes.load(planes_of(*task->texture)); !ok) return ok;
       const exchange::ChannelFacts facts = channel_facts(folder_, planes.planes());
       if (Result<void> ok = run_one(*task, planes, facts, context_.threads); !ok) return ok;
     }
     return {};
   }
   std::set<Plane> all;
-  for (const Task* task : tasks) all.merge(planes_of(*task->planned));
+  for (const Task* task : tasks) all.merge(planes_of(*task->texture));
   if (Result<void> ok = planes.load(all); !ok) return ok;
   const exchange::ChannelFacts facts = channel_facts(folder_, planes.planes());
   std::vector<std::optional<Error>> errors(tasks.size());
@@ -183,26 +233,27 @@ Result<void> Encoder::run_together(const std::vector<const Task*>& tasks, Size s
   return {};
 }
 
-Result<std::vector<std::vector<EncodedFile>>> Encoder::run() {
+Result<std::vector<EncodedTextures>> Encoder::run() {
   std::vector<Size> sizes;
   for (const Task& task : tasks_) {
-    if (std::ranges::find(sizes, task.plan->size) == sizes.end()) sizes.push_back(task.plan->size);
+    if (std::ranges::find(sizes, task.preset->size) == sizes.end()) sizes.push_back(task.preset->size);
   }
   for (const Size size : sizes) {
-    std::vector<const Task*> together;
-    for (const Task& task : tasks_) {
-      if (task.plan->size == size) together.push_back(&task);
+    std::vector<Task*> together;
+    for (Task& task : tasks_) {
+      if (task.preset->size == size) together.push_back(&task);
     }
     if (Result<void> ok = run_together(together, size); !ok) return std::move(ok).error();
   }
+  for (const Task& task : tasks_) encoded_[task.places.front().first].seconds += task.seconds;
   return std::move(encoded_);
 }
 
 }  // namespace
 
-Result<std::vector<std::vector<EncodedFile>>> encode_files(const MapFolder& folder,
-                                                           const std::vector<EncodeTarget>& targets,
-                                                           bool is_dx10, const JobContext& context) {
+Result<std::vector<EncodedTextures>> encode_files(const MapFolder& folder,
+                                                  const std::vector<EncodeTarget>& targets, bool is_dx10,
+                                                  const JobContext& context) {
   return Encoder(folder, targets, is_dx10, context).run();
 }
 

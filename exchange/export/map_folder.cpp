@@ -61,11 +61,13 @@ Result<fs::path> set_of_session(const MapFolderWish& wish) {
                fmt::format("make it first with weft maps {}", wish.input.string())};
 }
 
-Result<FolderMap> map_from_json(const Json& entry, const std::string& where) {
+Result<MapFacts> map_from_json(const Json& entry, const std::string& where) {
   JsonFields fields(entry, where);
-  FolderMap map = {.name = fields.text("name"), .source = fields.text_or("source", "assumed"), .more = entry};
-  map.file = fields.text_or("file", "");
-  map.constant = fields.optional_number("constant");
+  MapFacts map = {.name = fields.text("name"),
+                  .file = fields.text_or("file", ""),
+                  .source = map_source_named(fields.text_or("source", "")),
+                  .constant = fields.optional_number("constant"),
+                  .document = entry};
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
   if (map.file.empty() != map.constant.has_value())
     return unfit_folder(where, "a map has a file or is one number, and this one is not");
@@ -81,12 +83,12 @@ void add_surface(MapFolder& folder) {
   for (const char* name : {"normal", "albedo", "roughness", "specular"}) {
     const std::string file = fmt::format("{}.exr", name);
     if (folder.map(name) == nullptr && is_there(folder.folder / file))
-      folder.maps.push_back({.name = name, .file = file, .source = "measured"});
+      folder.maps.push_back({.name = name, .file = file, .source = MapSource::kMeasured});
   }
 }
 
 // Parameters of a built material that are no maps: a number or three, or {"value", "source"} of them.
-Result<void> add_parameters(const Json& parameters, const std::string& where, std::vector<FolderMap>& maps) {
+Result<void> add_parameters(const Json& parameters, const std::string& where, std::vector<MapFacts>& maps) {
   for (const auto& [name, written] : parameters.items()) {
     const bool is_object = written.is_object() && written.contains("value");
     const Json& value = is_object ? written["value"] : written;
@@ -97,12 +99,11 @@ Result<void> add_parameters(const Json& parameters, const std::string& where, st
     if (numbers.empty()) continue;
     if (!std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); }))
       return unfit_folder(where + ": " + name, "it is no finite number");
-    if (std::ranges::any_of(maps, [&name = name](const FolderMap& map) { return map.name == name; }))
-      continue;
+    if (std::ranges::any_of(maps, [&name = name](const MapFacts& map) { return map.name == name; })) continue;
     maps.push_back({.name = name,
-                    .source = is_object ? written.value("source", "assumed") : "assumed",
+                    .source = map_source_named(is_object ? written.value("source", "") : ""),
                     .constant = numbers.front(),
-                    .more = {{"numbers", numbers}}});
+                    .document = {{"numbers", numbers}}});
   }
   return {};
 }
@@ -180,7 +181,7 @@ Result<MapFolder> read_folder(const fs::path& path, const FolderKind& kind) {
     const Json& maps = fields.list("maps");
     if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
     for (std::size_t i = 0; i < maps.size(); ++i) {
-      Result<FolderMap> map = map_from_json(maps[i], fmt::format("{}: maps {}", where, i + 1));
+      Result<MapFacts> map = map_from_json(maps[i], fmt::format("{}: maps {}", where, i + 1));
       if (!map) return std::move(map).error();
       folder.maps.push_back(std::move(*map));
     }
@@ -200,20 +201,21 @@ Result<MapFolder> read_folder(const fs::path& path, const FolderKind& kind) {
 }
 
 // A number of the roughness map: alpha where it is said, else the square of the root.
-std::optional<double> alpha_constant(const FolderMap& map, const char* key) {
-  if (map.more.contains(key) && map.more[key].is_number()) return map.more[key].get<double>();
-  if (map.more.contains("alpha") && map.more["alpha"].is_number()) return map.more["alpha"].get<double>();
+std::optional<double> alpha_constant(const MapFacts& map, const char* key) {
+  if (map.document.contains(key) && map.document[key].is_number()) return map.document[key].get<double>();
+  if (map.document.contains("alpha") && map.document["alpha"].is_number())
+    return map.document["alpha"].get<double>();
   return map.constant ? std::optional(*map.constant * *map.constant) : std::nullopt;
 }
 
 std::optional<double> number_of(const MapFolder& folder, const char* name) {
-  const FolderMap* map = folder.map(name);
+  const MapFacts* map = folder.map(name);
   return map == nullptr ? std::nullopt : map->constant;
 }
 
 // Of two alphas whose smaller one is `alpha`, by the strength of KHR_materials_anisotropy. The highlight of a
 // built material is stretched along anisotropy_deg, so its larger alpha stands along.
-PlaneOrigin roughness_constant(const MapFolder& folder, const FolderMap& map, Plane plane) {
+PlaneOrigin roughness_constant(const MapFolder& folder, const MapFacts& map, Plane plane) {
   const std::optional<double> alpha = alpha_constant(map, "alpha");
   if (plane == Plane::kAlpha) return {.constant = alpha};
   const double strength = number_of(folder, "anisotropy").value_or(0);
@@ -225,8 +227,8 @@ PlaneOrigin roughness_constant(const MapFolder& folder, const FolderMap& map, Pl
 
 }  // namespace
 
-const FolderMap* MapFolder::map(const std::string& wanted) const {
-  const auto found = std::ranges::find(maps, wanted, &FolderMap::name);
+const MapFacts* MapFolder::map(const std::string& wanted) const {
+  const auto found = std::ranges::find(maps, wanted, &MapFacts::name);
   return found == maps.end() ? nullptr : &*found;
 }
 
@@ -293,13 +295,13 @@ Result<Json> provenance_of(const MapFolder& folder) {
 
 PlaneOrigin origin_of(const MapFolder& folder, Plane plane) {
   const exchange::PlaneKind& kind = exchange::kind_of(plane);
-  const FolderMap* map = folder.map(kind.map);
+  const MapFacts* map = folder.map(kind.map);
   if (map == nullptr && std::string(kind.map) == "specular") map = folder.map("f0");
   if (map == nullptr && std::string(kind.map) == "height") map = folder.map("height_mm");
   if (map == nullptr) return {};
-  if (map->file.empty() && map->more.contains("numbers") && map->more["numbers"].size() == 3) {
+  if (map->file.empty() && map->document.contains("numbers") && map->document["numbers"].size() == 3) {
     const std::size_t part = std::string_view("RGB").find(kind.channel);
-    return {.constant = map->more["numbers"][std::min<std::size_t>(part, 2)].get<double>()};
+    return {.constant = map->document["numbers"][std::min<std::size_t>(part, 2)].get<double>()};
   }
   if (map->file.empty()) {
     return std::string(kind.map) == "roughness" ? roughness_constant(folder, *map, plane)

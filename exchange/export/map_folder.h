@@ -11,18 +11,9 @@
 #include "core/image/image.h"
 #include "core/rig/session.h"
 #include "exchange/presets/channels.h"
+#include "material/run/map_facts.h"
 
 namespace weft::app {
-
-/// One map of a folder: a file or a number.
-struct FolderMap {
-  std::string name;                ///< "albedo"
-  std::string file = {};           ///< relative to the folder; empty: the map is a number
-  std::string source = "assumed";  ///< "measured", "derived" or "assumed"
-  std::optional<double> constant = {};
-  double least = 0, most = 0;  ///< of the first channel of a file
-  Json more = Json::object();  ///< its entry in the document
-};
 
 /// A folder of maps of one cloth: a set of maps (maps.json), a built material (material.json), or a solve
 /// (solve.json) as it was photographed.
@@ -35,9 +26,9 @@ struct MapFolder {
   Size size;
   std::optional<double> mm_per_pixel;  ///< none: photographs do not tell
   bool is_tile = false;
-  std::string albedo_scale;  ///< "absolute", "relative" or, where nobody says, "unknown"
-  std::vector<FolderMap> maps;
-  std::string document_file;  ///< "maps.json"
+  std::string albedo_scale;    ///< "absolute", "relative" or, where nobody says, "unknown"
+  std::vector<MapFacts> maps;  ///< `document`: its entry; a parameter of several numbers has them there
+  std::string document_file;   ///< "maps.json"
   Json document;
   std::optional<Session> session;  ///< that it lies in
   /// Of the solve: its level, whether it is a preview, and why it is stale today, a sentence each.
@@ -45,7 +36,7 @@ struct MapFolder {
   bool is_draft = false;
   std::vector<std::string> stale = {};
 
-  const FolderMap* map(const std::string& name) const;
+  const MapFacts* map(const std::string& name) const;
 };
 
 /// What is opened, and what it is for.

@@ -8,12 +8,19 @@
 
 #include "core/base/result.h"
 #include "core/image/image.h"
-#include "exchange/export/lobe_levels.h"
 #include "exchange/export/map_folder.h"
 #include "exchange/presets/channels.h"
 #include "exchange/presets/mips.h"
 
 namespace weft::app {
+
+/// The lobe of a cloth on a grid and on coarser ones: planes alpha, alpha_along, yarn_deg. Alphas are widened
+/// by the spread of the normals of all pixels beneath a texel, by the rule of the set's own mips
+/// (material/filtering/roughness_mips). Pixels without a solution and holes count nowhere.
+struct LobeOnGrid {
+  Image<float> own;                   ///< of the grid itself; empty where that is the folder's
+  std::vector<Image<float>> coarser;  ///< sides halved and rounded down, down to 1 x 1
+};
 
 /// The planes of a folder of maps, each file read when its planes are first asked for.
 class MapPlanes {
@@ -30,7 +37,8 @@ class MapPlanes {
   /// What is loaded; of files that are not, an empty plane with a number, so that it counts as there.
   const exchange::SourcePlanes& planes() const { return planes_; }
 
-  /// The lobe on ever coarser grids, once a plane of it was asked for; empty where there are no normals.
+  /// The lobe on ever coarser grids, once a plane of it was asked for; empty where there are no normals or no
+  /// roughness, or one that is 1 everywhere.
   exchange::LobeLevels lobe() const { return lobe_.coarser; }
 
   /// The planes as check_file() and says_something() need them: those of files have a pixel without a

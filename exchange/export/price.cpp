@@ -12,9 +12,7 @@
 
 #include "core/base/temporary_folder.h"
 #include "core/describe/field_json.h"
-#include "exchange/export/export_json.h"
 #include "exchange/export/map_planes.h"
-#include "exchange/export/prepare.h"
 #include "exchange/export/texture_file.h"
 
 namespace weft::app {
@@ -145,8 +143,8 @@ std::vector<PresetFile> everything() {
   return files;
 }
 
-// All planes that the plans and the comparison need.
-std::set<exchange::Plane> needed(const std::vector<PlannedExport>& plans) {
+// All planes that the presets and the comparison need.
+std::set<exchange::Plane> needed(const std::vector<FilledPreset>& presets) {
   std::set<exchange::Plane> planes;
   const auto add = [&](const PresetFile& file) {
     for (const std::string& name : file.channels) {
@@ -154,82 +152,83 @@ std::set<exchange::Plane> needed(const std::vector<PlannedExport>& plans) {
       planes.insert(of.begin(), of.end());
     }
   };
-  for (const PlannedExport& plan : plans) {
-    for (const PlannedFile& planned : plan.files) add(planned.file);
+  for (const FilledPreset& preset : presets) {
+    for (const TextureToWrite& texture : preset.textures) add(texture.file);
   }
   for (const PresetFile& file : everything()) add(file);
   return planes;
 }
 
-Result<void> choose_for(PlannedFile& planned, const std::string& preset, double to_deg,
-                        exchange::RoughnessConvention roughness, Trials& trials) {
+Result<void> choose_for(TextureToWrite& texture, const exchange::Preset& preset, double to_deg,
+                        Trials& trials) {
   std::optional<ExportPrice> best, kept;
-  for (const Stored& way : ways_of(planned.file)) {
-    PresetFile file = planned.file;
+  for (const Stored& way : ways_of(texture.file)) {
+    PresetFile file = texture.file;
     file.stored = way;
-    Result<ExportPrice> price = trials.price(file, roughness);
+    Result<ExportPrice> price = trials.price(file, preset.roughness);
     if (!price) return std::move(price).error();
     const double deg = price->loss.normal->mean_deg;
     if (!best || deg < best->loss.normal->mean_deg) best = *price;
     if (deg <= to_deg && (!kept || price->bytes < kept->bytes)) kept = *price;
   }
   if (kept) {
-    planned.file.stored = kept->stored;
+    texture.file.stored = kept->stored;
     return {};
   }
   return Error{ErrorKind::kBadData, "normals cannot be kept so well", "--to",
-               fmt::format("{} of preset {} loses {:.2g} degrees at best, as {}", planned.name, preset,
+               fmt::format("{} of preset {} loses {:.2g} degrees at best, as {}", texture.name, preset.name,
                            best->loss.normal->mean_deg, words_of(best->stored)),
                "allow more, or choose a preset of 16 bits or floats: png16, tiff16, exr"};
 }
 
 }  // namespace
 
-Result<void> choose_bits(const ExportOptions& options, const MapFolder& folder, double to_deg,
-                         std::vector<PlannedExport>& plans, const JobContext& context) {
+Result<void> choose_bits(PreparedExport& prepared, const JobContext& context) {
+  if (!prepared.options.to_deg) return {};
+  const MapFolder& folder = prepared.folder;
   MapPlanes maps(folder, folder.size, context.threads);
   if (Result<void> ok = maps.load({exchange::Plane::kNormalX}); !ok) return ok;
   const Piece piece = piece_of(maps, folder);
   Trials trials(piece);
-  for (PlannedExport& plan : plans) {
-    for (PlannedFile& planned : plan.files) {
-      if (!has_normals(planned.file)) continue;
+  for (FilledPreset& preset : prepared.presets) {
+    for (TextureToWrite& texture : preset.textures) {
+      if (!has_normals(texture.file)) continue;
       if (context.stop.stop_requested()) return interrupted();
-      Result<void> chosen = choose_for(planned, plan.preset.name, to_deg, plan.preset.roughness, trials);
+      Result<void> chosen = choose_for(texture, preset.preset, *prepared.options.to_deg, trials);
       if (!chosen) return chosen;
     }
-    if (Result<void> ok = seal(options, folder, plan); !ok) return ok;
   }
   return {};
 }
 
 Result<std::vector<ExportPrice>> price_exports(const ExportOptions& asked, const JobContext& context) {
-  const Result<PreparedExport> prepared = prepare_export(asked, context);
-  if (!prepared) return prepared.error();
+  Result<PreparedExport> prepared = prepare_export(asked, context);
+  if (!prepared) return std::move(prepared).error();
+  if (Result<void> ok = choose_bits(*prepared, context); !ok) return std::move(ok).error();
   const MapFolder& folder = prepared->folder;
   MapPlanes maps(folder, folder.size, context.threads);
-  if (Result<void> ok = maps.load(needed(prepared->plans)); !ok) return std::move(ok).error();
+  if (Result<void> ok = maps.load(needed(prepared->presets)); !ok) return std::move(ok).error();
   const Piece piece = piece_of(maps, folder);
   Trials trials(piece);
   std::vector<ExportPrice> prices;
-  for (const PlannedExport& plan : prepared->plans) {
+  for (const FilledPreset& preset : prepared->presets) {
     const double smaller =
-        static_cast<double>(plan.size.pixels()) / static_cast<double>(folder.size.pixels());
-    for (const PlannedFile& planned : plan.files) {
+        static_cast<double>(preset.size.pixels()) / static_cast<double>(folder.size.pixels());
+    for (const TextureToWrite& texture : preset.textures) {
       if (context.stop.stop_requested()) return interrupted();
-      Result<ExportPrice> price = trials.price(planned.file, plan.preset.roughness);
+      Result<ExportPrice> price = trials.price(texture.file, preset.preset.roughness);
       if (!price) return std::move(price).error();
-      if (levels_of(planned.file, folder.size) == 1) {
+      if (levels_of(texture.file, folder.size) == 1) {
         exchange::ChannelFacts facts = piece.facts;
-        facts.roughness = plan.preset.roughness;
-        price->loss.by_distance = exchange::loss_by_distance(planned.file, maps.planes(), facts, maps.lobe(),
+        facts.roughness = preset.preset.roughness;
+        price->loss.by_distance = exchange::loss_by_distance(texture.file, maps.planes(), facts, maps.lobe(),
                                                              folder.size, context.threads);
       }
-      price->preset = plan.preset.name;
-      price->file = planned.name;
+      price->preset = preset.preset.name;
+      price->file = texture.name;
       price->bytes *= smaller;
       price->seconds *= smaller;
-      price->is_chosen = prepared->options.to_deg && has_normals(planned.file);
+      price->is_chosen = prepared->options.to_deg && has_normals(texture.file);
       prices.push_back(std::move(*price));
     }
   }

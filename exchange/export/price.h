@@ -7,9 +7,8 @@
 #include "core/base/job.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
-#include "exchange/export/export.h"
-#include "exchange/export/map_folder.h"
-#include "exchange/export/plan.h"
+#include "exchange/export/export_request.h"
+#include "exchange/export/prepare.h"
 #include "exchange/presets/loss.h"
 
 namespace weft::app {
@@ -31,9 +30,9 @@ struct ExportPrice {
 Result<std::vector<ExportPrice>> price_exports(const ExportOptions& options, const JobContext& context);
 Json json_of(const std::vector<ExportPrice>& prices);
 
-/// Gives each file with normals the fewest bits of its own encoding with which they lose at most `to_deg` in
-/// the mean, measured on that piece. kBadData where its encoding has none, with the best that there is.
-Result<void> choose_bits(const ExportOptions& options, const MapFolder& folder, double to_deg,
-                         std::vector<PlannedExport>& plans, const JobContext& context);
+/// Gives each file with normals the fewest bits of its own encoding with which they lose at most the
+/// `to_deg` that is asked for in the mean, measured on that piece. kBadData where its encoding has none, with
+/// the best that there is.
+Result<void> choose_bits(PreparedExport& prepared, const JobContext& context);
 
 }  // namespace weft::app

@@ -2,13 +2,14 @@
 #include "exchange/export/textured.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <cstddef>
 #include <initializer_list>
 #include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
+
+#include "exchange/export/map_planes.h"
 
 namespace weft::app {
 namespace {
@@ -17,18 +18,21 @@ using exchange::Parameter;
 using exchange::Texture;
 using exchange::TexturedMaterial;
 
-// A file, and where in it the channels begin.
+// A texture, how it is stored, and where in it the channels begin.
 struct FoundChannels {
-  const EncodedFile* file = nullptr;
+  const ExportedTexture& texture;
+  const exchange::Stored& stored;
   std::size_t first = 0;
 };
 
-std::optional<FoundChannels> find_channels(const std::vector<EncodedFile>& files,
+std::optional<FoundChannels> find_channels(const ClothTextures& cloth,
                                            const std::vector<std::string>& channels) {
-  for (const EncodedFile& file : files) {
-    const std::vector<std::string>& all = file.file.channels;
-    const auto found = std::search(all.begin(), all.end(), channels.begin(), channels.end());
-    if (found != all.end()) return FoundChannels{&file, static_cast<std::size_t>(found - all.begin())};
+  for (std::size_t i = 0; i < cloth.textures.size(); ++i) {
+    const exchange::PresetFile& file = cloth.preset.textures[i].file;
+    const auto found = std::ranges::search(file.channels, channels);
+    if (found.empty()) continue;
+    return FoundChannels{cloth.textures[i], file.stored,
+                         static_cast<std::size_t>(found.begin() - file.channels.begin())};
   }
   return std::nullopt;
 }
@@ -36,48 +40,47 @@ std::optional<FoundChannels> find_channels(const std::vector<EncodedFile>& files
 // Of the map that the first channel comes from.
 std::string source_in(const MapFolder& maps, const exchange::Channel& channel) {
   for (const exchange::Plane plane : channel.planes) {
-    if (const FolderMap* map = maps.map(exchange::kind_of(plane).map)) return map->source;
+    if (const MapFacts* map = maps.map(exchange::kind_of(plane).map)) return name_of(map->source);
   }
   return "assumed";
 }
 
 Texture texture_of(const FoundChannels& found, std::size_t count, const exchange::Channel& channel) {
-  const EncodedFile& file = *found.file;
   constexpr std::string_view kLetters = "rgba";
-  Texture texture = {.file = file.name, .size = file.size, .bits = file.file.stored.bits};
+  Texture texture = {.file = found.texture.file, .size = found.texture.size, .bits = found.stored.bits};
   texture.channels = kLetters.substr(found.first, count);
-  texture.is_srgb =
-      file.file.stored.color == ColorSpace::kSrgb && channel.kind == exchange::ChannelKind::kColor;
+  texture.is_srgb = found.stored.color == ColorSpace::kSrgb && channel.kind == exchange::ChannelKind::kColor;
   // Directions are n / 2 + 1/2 by the noun itself.
-  if (channel.kind == exchange::ChannelKind::kNormal || file.file.stored.is_float()) return texture;
-  const exchange::ChannelRange range = exchange::range_of(channel, file.facts);
-  texture.scale = range.most - range.least;
-  texture.offset = range.least;
+  if (channel.kind == exchange::ChannelKind::kNormal || found.stored.is_float()) return texture;
+  const ExportedChannel& written = found.texture.channels[found.first];
+  texture.scale = *written.at_1 - *written.at_0;
+  texture.offset = *written.at_0;
   return texture;
 }
 
-std::optional<Parameter> parameter_of(const MapFolder& maps, const std::vector<EncodedFile>& files,
-                                      const std::vector<std::string>& channels) {
-  const std::optional<FoundChannels> found = find_channels(files, channels);
+std::optional<Parameter> parameter_of(const ClothTextures& cloth, const std::vector<std::string>& channels) {
+  const std::optional<FoundChannels> found = find_channels(cloth, channels);
   if (!found) return std::nullopt;
   const exchange::Channel& first = *exchange::channel_named(channels.front());
   Parameter parameter = {.texture = texture_of(*found, channels.size(), first),
-                         .source = source_in(maps, first)};
+                         .source = source_in(cloth.maps, first)};
+  const exchange::ChannelFacts facts = channel_facts(cloth.maps, {});
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    const exchange::ChannelRange range =
-        exchange::range_of(*exchange::channel_named(channels[i]), found->file->facts);
-    const double mean = found->file->loss.channels[found->first + i].mean;
+    const exchange::ChannelRange range = exchange::range_of(*exchange::channel_named(channels[i]), facts);
+    const double mean = found->texture.channels[found->first + i].mean;
     parameter.constant[i] = std::clamp(mean, range.least, range.most);
   }
   return parameter;
 }
 
-bool is_same_everywhere(const EncodedFile& file, const Texture& texture) {
-  const std::size_t first = std::string_view("rgba").find(texture.channels.front());
-  for (std::size_t i = first; i < first + texture.channels.size(); ++i) {
-    if (file.loss.channels[i].least != file.loss.channels[i].most) return false;
-  }
-  return true;
+bool is_one_number(const ExportedChannel& channel) {
+  return channel.least == channel.most;
+}
+
+bool is_same_everywhere(const ExportedTexture& file, const Texture& texture) {
+  const auto first = file.channels.begin() +
+                     static_cast<std::ptrdiff_t>(std::string_view("rgba").find(texture.channels.front()));
+  return std::all_of(first, first + static_cast<std::ptrdiff_t>(texture.channels.size()), is_one_number);
 }
 
 bool is_flat(const Parameter& normal) {
@@ -88,7 +91,7 @@ bool is_flat(const Parameter& normal) {
 // or takes none.
 class Constants {
  public:
-  Constants(TexturedMaterial& material, const std::vector<EncodedFile>& files)
+  Constants(TexturedMaterial& material, const std::vector<ExportedTexture>& files)
       : material_(material), files_(files) {}
 
   void take(bool takes_no_occlusion) {
@@ -106,7 +109,7 @@ class Constants {
 
  private:
   bool is_same(const Parameter& parameter) const {
-    const auto file = std::ranges::find(files_, parameter.texture->file, &EncodedFile::name);
+    const auto file = std::ranges::find(files_, parameter.texture->file, &ExportedTexture::file);
     return is_same_everywhere(*file, *parameter.texture);
   }
 
@@ -122,14 +125,14 @@ class Constants {
   }
 
   TexturedMaterial& material_;
-  const std::vector<EncodedFile>& files_;
+  const std::vector<ExportedTexture>& files_;
   std::optional<Parameter> base_color_ = material_.base_color;
 };
 
 // Reflectance itself, or over 0.08, which uses more of the steps of a file.
-std::optional<Parameter> reflectance_of(const MapFolder& maps, const std::vector<EncodedFile>& files) {
-  if (std::optional<Parameter> plain = parameter_of(maps, files, {"f0"})) return plain;
-  std::optional<Parameter> scaled = parameter_of(maps, files, {"specular"});
+std::optional<Parameter> reflectance_of(const ClothTextures& cloth) {
+  if (std::optional<Parameter> plain = parameter_of(cloth, {"f0"})) return plain;
+  std::optional<Parameter> scaled = parameter_of(cloth, {"specular"});
   if (!scaled) return scaled;
   constexpr double kF0OfSpecular = 0.08;
   scaled->texture->scale *= kF0OfSpecular;
@@ -151,34 +154,32 @@ std::vector<std::pair<std::string, std::string>> provenance_words(const MapFolde
       words.emplace_back("calibration", maps.session->calibration_id);
   }
   words.emplace_back("albedo_scale", maps.albedo_scale);
-  for (const FolderMap& map : maps.maps) words.emplace_back("source." + map.name, map.source);
+  for (const MapFacts& map : maps.maps) words.emplace_back("source." + map.name, name_of(map.source));
   return words;
 }
 
 }  // namespace
 
-bool is_said_as_number(const EncodedFile& file, const std::vector<std::string>& named) {
+bool is_said_as_number(const ExportedTexture& texture, const std::vector<std::string>& named) {
   static const std::set<std::string> kParameters = {
       "albedo.r",        "albedo.g",     "albedo.b",  "normal.x", "normal.y",
       "normal.z",        "height",       "occlusion", "opacity",  "roughness",
       "roughness.least", "f0",           "specular",  "metallic", "anisotropy",
       "anisotropy.x",    "anisotropy.y", "sheen.r",   "sheen.g",  "sheen.b",
       "sheen_roughness", "zero",         "half",      "one"};
-  const bool is_plain = std::ranges::all_of(file.loss.channels, [](const exchange::ChannelLoss& channel) {
-    return channel.least == channel.most && kParameters.contains(channel.channel);
+  const bool is_plain = std::ranges::all_of(texture.channels, [](const ExportedChannel& channel) {
+    return is_one_number(channel) && kParameters.contains(channel.name);
   });
-  return is_plain && std::ranges::find(named, file.name) == named.end();
+  return is_plain && std::ranges::find(named, texture.file) == named.end();
 }
 
-TexturedMaterial textured_material(const PlannedExport& plan, const MapFolder& maps,
-                                   const std::vector<EncodedFile>& files) {
-  const auto of = [&](const std::vector<std::string>& channels) {
-    return parameter_of(maps, files, channels);
-  };
+TexturedMaterial textured_material(const ClothTextures& cloth) {
+  const auto& [maps, preset, textures] = cloth;
+  const auto of = [&](const std::vector<std::string>& channels) { return parameter_of(cloth, channels); };
   TexturedMaterial material;
-  material.name = plan.title;
-  if (plan.pitch_mm[0] > 0)
-    material.size_mm = {plan.pitch_mm[0] * plan.size.width, plan.pitch_mm[1] * plan.size.height};
+  material.name = preset.title;
+  if (preset.pitch_mm[0] > 0)
+    material.size_mm = {preset.pitch_mm[0] * preset.size.width, preset.pitch_mm[1] * preset.size.height};
   material.repeats = maps.is_tile;
   material.base_color =
       of({"albedo.r", "albedo.g", "albedo.b"}).value_or(Parameter{.constant = {0.5, 0.5, 0.5}});
@@ -187,20 +188,20 @@ TexturedMaterial textured_material(const PlannedExport& plan, const MapFolder& m
   material.roughness = of({"roughness.least"});
   if (!material.roughness) material.roughness = of({"roughness"});
   material.occlusion = of({"occlusion"});
-  if (const FolderMap* opacity = maps.map("opacity")) {
+  if (const MapFacts* opacity = maps.map("opacity")) {
     if (!(opacity->constant && *opacity->constant == 1)) material.opacity = of({"opacity"});
   }
-  material.f0 = reflectance_of(maps, files);
+  material.f0 = reflectance_of(cloth);
   material.metallic = of({"metallic"});
   material.anisotropy = of({"anisotropy"});
   material.anisotropy_direction = of({"anisotropy.x", "anisotropy.y"});
   material.sheen_color = of({"sheen.r", "sheen.g", "sheen.b"});
   material.sheen_roughness = of({"sheen_roughness"});
   material.provenance = provenance_words(maps);
-  const bool has_glb = std::ranges::any_of(plan.documents, [](const PlannedDocument& document) {
+  const bool has_glb = std::ranges::any_of(preset.documents, [](const exchange::PresetDocument& document) {
     return document.kind == exchange::DocumentKind::kGlb;
   });
-  Constants(material, files).take(has_glb);
+  Constants(material, textures).take(has_glb);
   return material;
 }
 

@@ -41,7 +41,7 @@ void describe(Fields& fields, ExportedTexture& f) {
   fields.value({"inside", "The document that alone holds it", {}, kUnlessEmpty}, f.inside);
 }
 
-void describe(Fields& fields, WrittenDocument& d) {
+void describe(Fields& fields, ExportedDocument& d) {
   fields.value({"file", "Relative to the folder", {}, kMustSay}, d.name);
   fields.value({"kind", "Its format"}, d.kind);
   fields.value({"sha256", "Of its bytes", {}, kMustSay}, d.sha256);

@@ -27,7 +27,7 @@ struct NumberLoss {
 };
 
 struct ExportedChannel {
-  std::string name, unit, source;
+  std::string name, unit, source = {};
   std::optional<double> at_0 = {}, at_1 = {};  ///< of integers: the values that 0 and full scale stand for
   double least = 0, most = 0, mean = 0;        ///< of the maps' values
   NumberLoss lost = {};
@@ -35,11 +35,11 @@ struct ExportedChannel {
 };
 
 struct ExportedTexture {
-  std::string file, sha256;  ///< relative to the folder
+  std::string file = {}, sha256 = {};  ///< relative to the folder
   std::uint64_t bytes = 0;
   Size size = {};
   int levels = 1;
-  std::string encoding;
+  std::string encoding = {};
   ColorSpace color = {};
   std::string direction = {}, roughness = {};  ///< empty: it has none
   std::vector<ExportedChannel> channels = {};
@@ -48,7 +48,7 @@ struct ExportedTexture {
 };
 
 /// A document as it was written.
-struct WrittenDocument {
+struct ExportedDocument {
   std::string name;
   std::string kind;
   std::string sha256;
@@ -66,7 +66,7 @@ struct ExportFacts {
   std::string albedo_scale = {};
   std::vector<std::string> notes = {};
   std::vector<ExportedTexture> files = {};
-  std::vector<WrittenDocument> documents = {};
+  std::vector<ExportedDocument> documents = {};
   Json from = Json::object();  ///< provenance_of()
   Json document = {};          ///< as it was read, so that fields of newer versions survive
 };

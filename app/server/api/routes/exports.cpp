@@ -89,7 +89,7 @@ Result<std::string> digest_of(const ExportFacts& facts, const std::string& name)
   for (const ExportedTexture& each : facts.files) {
     if (each.file == name) return each.sha256;
   }
-  for (const WrittenDocument& each : facts.documents) {
+  for (const ExportedDocument& each : facts.documents) {
     if (each.name == name) return each.sha256;
   }
   return no_such_export(name);
