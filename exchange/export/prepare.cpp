@@ -20,7 +20,7 @@
 #include "exchange/presets/pack.h"
 #include "material/assets/build.h"
 #include "material/assets/material_place.h"
-#include "material/run/map_work.h"
+#include "material/run/derived_maps.h"
 
 namespace weft::app {
 namespace {

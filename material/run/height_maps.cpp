@@ -17,7 +17,7 @@
 #include "material/maps/occlusion.h"
 #include "material/maps/specular_occlusion.h"
 #include "material/maps/visibility.h"
-#include "material/run/map_work.h"
+#include "material/run/derived_maps.h"
 #include "material/run/surface_files.h"
 #include "solver/height/tiled_height.h"
 

@@ -9,7 +9,7 @@
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "material/filtering/detail.h"
-#include "material/run/map_work.h"
+#include "material/run/derived_maps.h"
 #include "material/run/surface_files.h"
 
 namespace weft::app {

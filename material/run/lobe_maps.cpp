@@ -14,7 +14,7 @@
 #include "core/solve/solve_record.h"
 #include "material/filtering/joined_gloss.h"
 #include "material/filtering/roughness_mips.h"
-#include "material/run/map_work.h"
+#include "material/run/derived_maps.h"
 #include "material/run/surface_files.h"
 #include "solve/files/gloss_maps.h"
 

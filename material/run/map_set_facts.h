@@ -13,9 +13,9 @@
 #include "core/image/image.h"
 #include "core/solve/verdict.h"
 #include "material/run/map_facts.h"
-#include "material/run/map_work.h"
 #include "material/validation/validate.h"
 #include "solve/session/current.h"
+#include "solver/height/height.h"
 
 // What maps.json says of a set of maps (weft.maps/1).
 
@@ -24,6 +24,19 @@ namespace weft::app {
 inline constexpr ProductKind kMapsProduct = {"weft.maps", "maps.json", "set of maps",
                                              "make it first with weft maps"};
 
+/// Words for solver::HeightMethod, in its order.
+inline constexpr std::array<const char*, 4> kHeightMethodNames = {"tiled", "direct", "multigrid", "seed"};
+
+/// How maps are derived.
+struct DeriveOptions {
+  /// kAutomatic: tile by tile, for maps of any size; of a tile the periodic solution.
+  solver::HeightMethod height = solver::HeightMethod::kAutomatic;
+  bool weighs_by_sigma = false;  ///< height: pixels count by one over the variance of their normal
+  double cavity_mm = 2;          ///< radius that a cavity is seen against
+  int directions = 8;            ///< of the occlusion's lines, 4 to 64
+  /// Where the photographs do not tell the lobe it is that of this cloth (planned_cloths()).
+  std::string cloth = "cotton";
+};
 /// As documents have them.
 void describe(Fields& fields, DeriveOptions& options);
 

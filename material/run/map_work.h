@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,25 +13,10 @@
 #include "core/solve/verdict.h"
 #include "material/opacity/opacity.h"
 #include "material/run/map_facts.h"
+#include "material/run/map_set_facts.h"
 #include "material/surface.h"
-#include "solver/height/height.h"
-#include "solver/reflectance/lobe.h"
 
 namespace weft::app {
-
-/// Words for solver::HeightMethod, in its order.
-inline constexpr std::array<const char*, 4> kHeightMethodNames = {"tiled", "direct", "multigrid", "seed"};
-
-/// How maps are derived.
-struct DeriveOptions {
-  /// kAutomatic: tile by tile, for maps of any size; of a tile the periodic solution.
-  solver::HeightMethod height = solver::HeightMethod::kAutomatic;
-  bool weighs_by_sigma = false;  ///< height: pixels count by one over the variance of their normal
-  double cavity_mm = 2;          ///< radius that a cavity is seen against
-  int directions = 8;            ///< of the occlusion's lines, 4 to 64
-  /// Where the photographs do not tell the lobe it is that of this cloth (planned_cloths()).
-  std::string cloth = "cotton";
-};
 
 /// A set of maps under way: what each is derived from, what is shared between them, and what was made.
 struct MapWork {
@@ -63,30 +47,5 @@ void write_constant(MapWork& work, MapFacts facts, double value, std::string why
 
 /// Of a pixel of a coarser level of this surface.
 PixelPitch pitch_of_level(const material::Surface& surface, Size level);
-
-/// Integrates the slopes, once.
-Result<void> find_height(MapWork& work);
-
-/// What the relief hides of the sky, once.
-Result<void> find_openness(MapWork& work);
-
-// Each makes the map of its name.
-Result<void> make_height(MapWork& work);
-Result<void> make_curl(MapWork& work);
-Result<void> make_occlusion(MapWork& work);
-Result<void> make_cavity(MapWork& work);
-Result<void> make_roughness(MapWork& work);
-Result<void> make_gloss(MapWork& work);
-Result<void> make_mips(MapWork& work);
-Result<void> make_detail(MapWork& work);
-Result<void> make_opacity(MapWork& work);
-
-/// What can be derived from a surface.
-struct DerivedMap {
-  const char* name;
-  const char* says;
-  Result<void> (*make)(MapWork& work);
-};
-const std::vector<DerivedMap>& derived_maps();
 
 }  // namespace weft::app

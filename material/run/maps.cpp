@@ -21,9 +21,10 @@
 #include "material/opacity/opacity.h"
 #include "material/run/finishing.h"
 #include "material/run/light_below.h"
-#include "material/run/map_checks.h"
+#include "material/run/map_work.h"
 #include "material/run/maps_page.h"
 #include "material/run/surface_files.h"
+#include "material/validation/validate.h"
 #include "report/downsampler.h"
 #include "report/preview.h"
 #include "solve/files/pictures.h"
@@ -155,8 +156,58 @@ Result<void> derive(const std::vector<std::string>& asked, MapWork& work) {
   return {};
 }
 
+// The share of each square of pixels that a finding is about.
+Result<void> draw_where(const std::filesystem::path& file, const Image<std::uint8_t>& where) {
+  Image<float> marked(where.size());
+  for (int y = 0; y < where.height(); ++y) {
+    for (int x = 0; x < where.width(); ++x) marked(x, y) = where(x, y) > 0 ? 1.0F : 0.0F;
+  }
+  report::Downsampler reduced(marked.size(), 1);
+  reduced.add_rows(std::vector<View<const float>>{marked.plane()});
+  return write_png(file, report::heat_picture(reduced.averages().plane(), 1, " share"));
+}
+
+// What validation says of maps.
+struct CheckedMaps {
+  std::vector<MapCheck> checks;
+  std::vector<Verdict> verdicts;
+};
+
+// Whether the maps are those of a cloth and fit to be put on a material. Those that did not pass have a
+// picture of where.
+Result<CheckedMaps> check_maps(const MapWork& work, bool has_measured_black) {
+  material::MapsToValidate maps;
+  maps.surface = &work.surface;
+  maps.openness = work.openness.empty() ? View<const float>() : View<const float>(work.openness.plane());
+  // The slopes of a tile's height are those of its waves, which differences of pixels are not.
+  if (!work.height_mm.empty() && !work.surface.is_tile) maps.height_mm = work.height_mm.plane();
+  maps.has_measured_black = has_measured_black;
+  maps.level = work.level;
+  maps.is_height_of_slopes = true;
+  maps.is_colour_changed = work.is_colour_changed;
+  material::ValidationLimits limits;
+  limits.threads = work.context.threads;
+  const Result<std::vector<material::Finding>> findings = material::validate(maps, limits);
+  if (!findings && findings.error().kind == ErrorKind::kBadData) {
+    return CheckedMaps{{}, {{"NO_CLOTH", "no pixel is cloth that was solved", findings.error().remedy}}};
+  }
+  if (!findings) return findings.error();
+  CheckedMaps checked = {.checks = {}, .verdicts = material::verdicts_of(*findings)};
+  for (const material::Finding& finding : *findings) {
+    MapCheck check = {finding.verdict.name, finding.severity,     finding.number,
+                      finding.limit,        finding.verdict.text, {}};
+    if (finding.severity != material::Severity::kPassed && !finding.where.empty()) {
+      check.picture = "where_" + finding.verdict.name + ".png";
+      if (Result<void> ok = draw_where(work.folder / check.picture, finding.where); !ok)
+        return std::move(ok).error();
+    }
+    checked.checks.push_back(std::move(check));
+  }
+  return checked;
+}
+
 MapSetFacts facts_of(const Product& product, const RectifyFacts& rectified, const MapsOptions& options,
-                     const FinishingFacts& finished, const MapWork& work) {
+                     const FinishingFacts& finished, const MapWork& work, CheckedMaps checked) {
   const Surface& surface = work.surface;
   MapSetFacts facts = {.id = product.id,
                        .source = rectified.source,
@@ -168,9 +219,11 @@ MapSetFacts facts_of(const Product& product, const RectifyFacts& rectified, cons
                        .steps = steps_of(options.recipe, finished),
                        .maps = work.made,
                        .derive = options.derive,
+                       .checks = std::move(checked.checks),
                        .verdicts = finished.verdicts};
   for (MapFacts& map : facts.maps) map.document = json_of(map);
-  facts.verdicts.insert(facts.verdicts.end(), work.verdicts.begin(), work.verdicts.end());
+  for (const std::vector<Verdict>& more : {work.verdicts, checked.verdicts})
+    facts.verdicts.insert(facts.verdicts.end(), more.begin(), more.end());
   return facts;
 }
 
@@ -272,11 +325,10 @@ Result<MapSetFacts> make_set(const MapsOptions& options, const Session& session,
   if (Result<void> ok = write_removed(work, *finished); !ok) return std::move(ok).error();
   if (Result<void> ok = derive(options.maps, work); !ok) return std::move(ok).error();
   // A layer of detail has no reflectance that could be checked.
-  Result<std::vector<MapCheck>> checks = std::vector<MapCheck>();
-  if (!finished->is_detail) checks = check_maps(work, session.dark() != nullptr);
-  if (!checks) return std::move(checks).error();
-  MapSetFacts facts = facts_of(product, rectified.facts, options, *finished, work);
-  facts.checks = std::move(*checks);
+  Result<CheckedMaps> checked = CheckedMaps();
+  if (!finished->is_detail) checked = check_maps(work, session.dark() != nullptr);
+  if (!checked) return std::move(checked).error();
+  MapSetFacts facts = facts_of(product, rectified.facts, options, *finished, work, std::move(*checked));
   facts.table = *table;
   if (Result<void> ok = write_maps_page(aside.path(), facts); !ok) return std::move(ok).error();
   if (Result<void> ok = write_json(aside.path() / kMapsProduct.document, json_of(facts)); !ok)

@@ -11,8 +11,8 @@
 #include "core/base/product.h"
 #include "core/base/result.h"
 #include "core/image/compression.h"
+#include "material/run/derived_maps.h"
 #include "material/run/map_set_facts.h"
-#include "material/run/map_work.h"
 #include "material/run/recipe.h"
 #include "material/run/rectify.h"
 
