@@ -175,7 +175,7 @@ bool is_plain(const std::vector<ExportedTexture>& textures) {
   });
 }
 
-// Of all layers, bottom to top.
+// All layers, bottom to top.
 std::vector<exchange::TexturedMaterial> materials_of(const exchange::TexturedMaterial& lowest,
                                                      const ClothLayers& layers) {
   std::vector<exchange::TexturedMaterial> materials = {lowest};

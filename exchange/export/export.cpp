@@ -164,7 +164,7 @@ void drop_numbers(const std::vector<ExportedDocument>& documents, const fs::path
   std::erase_if(textures, is_dropped);
 }
 
-// Of the map that a channel comes from; "assumed" where it comes from none.
+// The source of the map that a channel comes from; "assumed" where it comes from none.
 std::string source_of_channel(const MapFolder& folder, const exchange::Channel& channel) {
   for (const exchange::Plane plane : channel.planes) {
     const std::string name = exchange::kind_of(plane).map;

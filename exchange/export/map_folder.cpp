@@ -213,7 +213,7 @@ std::optional<double> number_of(const MapFolder& folder, const char* name) {
   return map == nullptr ? std::nullopt : map->constant;
 }
 
-// Of two alphas whose smaller one is `alpha`, by the strength of KHR_materials_anisotropy. The highlight of a
+// Two alphas whose smaller one is `alpha`, by the strength of KHR_materials_anisotropy. The highlight of a
 // built material is stretched along anisotropy_deg, so its larger alpha stands along.
 PlaneOrigin roughness_constant(const MapFolder& folder, const MapFacts& map, Plane plane) {
   const std::optional<double> alpha = alpha_constant(map, "alpha");

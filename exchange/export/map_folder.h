@@ -31,7 +31,7 @@ struct MapFolder {
   std::string document_file;   ///< "maps.json"
   Json document;
   std::optional<Session> session;  ///< that it lies in
-  /// Of the solve: its level, whether it is a preview, and why it is stale today, a sentence each.
+  /// The solve's level, whether it is a preview, and why it is stale today, a sentence each.
   std::string level = {};
   bool is_draft = false;
   std::vector<std::string> stale = {};

@@ -224,7 +224,7 @@ Result<void> MapPlanes::read(const std::string& file, const std::vector<Plane>& 
   return {};
 }
 
-// Of maps that are made smaller the lobe is the one that the pixels beneath have together.
+// The lobe of maps that are made smaller is the one that the pixels beneath have together.
 Result<void> MapPlanes::find_lobe() {
   if (!has_lobe_) {
     Result<LobeOnGrid> lobe = lobe_on_grid(folder_, size_, threads_);

@@ -37,7 +37,7 @@ std::optional<FoundChannels> find_channels(const ClothTextures& cloth,
   return std::nullopt;
 }
 
-// Of the map that the first channel comes from.
+// The source of the map that the first channel comes from.
 std::string source_in(const MapFolder& maps, const exchange::Channel& channel) {
   for (const exchange::Plane plane : channel.planes) {
     if (const MapFacts* map = maps.map(exchange::kind_of(plane).map)) return name_of(map->source);
@@ -113,7 +113,7 @@ class Constants {
     return is_same_everywhere(*file, *parameter.texture);
   }
 
-  // Of a group that stands in one file all leave as numbers, or none.
+  // A group that stands in one file leaves as numbers altogether, or not at all.
   void together(std::initializer_list<std::optional<Parameter>*> group) {
     std::set<std::string> varying;
     for (const std::optional<Parameter>* each : group) {

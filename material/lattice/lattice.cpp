@@ -163,7 +163,7 @@ std::optional<Yarns> surest_pair(const std::vector<Way>& ways, const Cell& cell,
   return found;
 }
 
-// Of all pairs of ways of the lattice that are nearly upright to each other the one along which most of the
+// Among all pairs of ways of the lattice that are nearly upright to each other the one along which most of the
 // slopes' energy goes on. The mean of the correlation along a way is that energy's share (Wiener and
 // Khinchin): a yarn goes on along itself, with its section, its crimp and whatever its thickness does, while
 // along a diagonal hollows follow crests. Albedo has no vote, since prints and stripes go where they like.

@@ -45,7 +45,7 @@ Result<void> draw_map(MapWork& work, MapFacts facts, const std::vector<View<cons
 /// A map that is one number.
 void write_constant(MapWork& work, MapFacts facts, double value, std::string why);
 
-/// Of a pixel of a coarser level of this surface.
+/// The pitch of a coarser level of this surface.
 PixelPitch pitch_of_level(const material::Surface& surface, Size level);
 
 }  // namespace weft::app
