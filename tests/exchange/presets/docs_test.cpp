@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/exports.md has the tables that the presets and the catalogue make.
+// docs/reference/exports.md has the tables that the presets and the catalogue make.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -83,7 +83,7 @@ std::string channel_table() {
 }
 
 std::string part_of_page(const std::string& begin, const std::string& end) {
-  const Result<std::string> page = read_text(in_sources("docs/exports.md"));
+  const Result<std::string> page = read_text(in_sources("docs/reference/exports.md"));
   EXPECT_TRUE(page);
   if (!page) return "";
   const std::size_t at = page->find('\n', page->find("<!-- " + begin)), to = page->find("<!-- " + end);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a texel of an exported file must hold, computed from the maps by the words of docs/exports.md and apart from
-// the program that wrote it.
+// What a texel of an exported file must hold, computed from the maps by the words of docs/reference/exports.md and
+// apart from the program that wrote it.
 import fs from 'node:fs';
 import path from 'node:path';
 import {srgbOfLinear} from './compare.mjs';
