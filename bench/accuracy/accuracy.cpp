@@ -20,6 +20,7 @@
 #include "core/solve/solve_record.h"
 #include "simulator/camera/sensor.h"
 #include "simulator/scene/scene_rig.h"
+#include "solve/levels/stages.h"
 #include "solver/method.h"
 
 namespace weft::bench {
@@ -165,6 +166,18 @@ Result<Rows> accuracy_by_leds(const AccuracyTableOptions& options) {
 
 namespace {
 
+SolvePatch by_reference(const pipeline::ReferenceOptions& options) {
+  return by_stages(pipeline::stages_of(solver::method_of(solver::Level::kReference), options));
+}
+
+// By the level reference, whatever gates and left-out light say.
+SolvePatch by_forced_reference() {
+  std::vector<pipeline::Stage> stages = pipeline::stages_of(solver::method_of(solver::Level::kReference));
+  for (const char* judge : {"gates", "choice", "comparison"})
+    stages = pipeline::without(judge, std::move(stages));
+  return by_stages(std::move(stages));
+}
+
 struct Setting {
   const char* curve;
   Contender contender;  ///< named by its setting
@@ -223,8 +236,7 @@ Result<Rows> accuracy_curves(const AccuracyTableOptions& options) {
 /// stages forced. Rows: "scene", "method" (gated, forced), "mean_deg", "p95_deg", "albedo_mean_rel",
 /// "ns_per_pixel".
 Result<Rows> accuracy_gates(const AccuracyTableOptions& options) {
-  const std::vector<Contender> both = {{"gated", by_reference({})},
-                                       {"forced", by_reference({.force_stages = true})}};
+  const std::vector<Contender> both = {{"gated", by_reference({})}, {"forced", by_forced_reference()}};
   const int threads = resolved_threads(options.threads);
   Rows table;
   for (const AccuracyScene& scene : accuracy_scenes(options.set, options.seed, options.quick)) {

@@ -13,7 +13,7 @@
 #include "bench/base/study.h"
 #include "core/base/result.h"
 #include "solve/levels/frame.h"
-#include "solve/levels/reference.h"
+#include "solve/levels/stage.h"
 #include "solver/method.h"
 
 namespace weft::bench {
@@ -39,8 +39,8 @@ Result<std::vector<Contender>> contenders_named(const std::vector<std::string>& 
 /// The levels, from the cheapest.
 std::vector<std::string> level_names();
 
-/// The level reference with these options.
-SolvePatch by_reference(const pipeline::ReferenceOptions& options);
+/// By stages on a patch of its own size.
+SolvePatch by_stages(std::vector<pipeline::Stage> stages);
 /// Photographs by a level, as the product runs it on a frame of its own size.
 Result<pipeline::FrameFacts> solve_level(const pipeline::Photographs& photographs,
                                          const solver::MethodName& level, int threads, SolvedMaps& maps);

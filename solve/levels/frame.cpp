@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/levels/frame.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <memory>
-#include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "core/base/parallel.h"
-#include "solve/bands/realign.h"
-#include "solve/correction/left_out.h"
+#include "solve/levels/stages.h"
 #include "solve/photographs/tile_reader.h"
 
 namespace weft::pipeline {
@@ -63,96 +59,32 @@ CameraModel half_camera(CameraModel camera, Size size) {
   return camera;
 }
 
-Result<void> solve_tiles(const Photographs& photographs, const solver::Method& method,
-                         const TileOptions& tile, const JobContext& context, const BandSink& sink,
-                         BandOptions options, FrameFacts& facts) {
-  options.tally = &facts.tally;
-  const Result<double> waited = solve_bands(photographs, method, tile, context, sink, options);
-  if (!waited) return waited.error();
-  facts.waited_seconds = *waited;
-  return {};
-}
-
-// What lights tell of a method, or of the blocks that two methods share, when they are left out.
-Result<void> check(const Photographs& photographs, const solver::Method& method, const JobContext& context,
-                   FrameFacts& facts) {
-  Result<solver::LeftOut> left_out =
-      leave_out_lights(photographs, {.method = &method},
-                       solver::patches_of(photographs.size, solver::PatchUse::kReport), context);
-  if (!left_out) return std::move(left_out).error();
-  facts.left_out = std::move(*left_out);
-  return {};
-}
-
-Result<FrameFacts> solve_as_seen(const Photographs& photographs, const solver::MethodName& method,
-                                 const TileOptions& tile, const JobContext& context, const BandSink& sink) {
-  FrameFacts facts;
-  const std::unique_ptr<solver::Method> asked = method.make();
-  if (method.extent == solver::Extent::kWholeFrame) {
-    Result<ReferenceFacts> solved = solve_reference(photographs, tile, {}, context, sink);
-    if (!solved) return std::move(solved).error();
-    facts.waited_seconds = solved->waited_seconds;
-    facts.tally = solved->tally;
-    facts.robust_share = solved->robust_share;
-    facts.gloss = solved->gloss;
-    facts.work = solved->work;
-    facts.left_out = std::move(solved->left_out);
-    facts.reference = std::move(*solved);
-    return facts;
-  }
-  BandOptions bands = {.model = solver::ModelTraits{.is_half = method.extent == solver::Extent::kHalfSize}};
-  const std::unique_ptr<solver::Method> standard = solver::method_of(solver::Level::kStandard).make();
-  std::unique_ptr<solver::Method> by_block;
-  std::optional<solver::BlockChoice> robust;
-  if (method.level == solver::Level::kRobust) {
-    Result<solver::BlockChoice> choice =
-        choose_by_block(photographs, {.method = standard.get()}, {.method = asked.get()}, context);
-    if (!choice) return std::move(choice).error();
-    facts.robust_share = choice->share();
-    by_block = solver::blended_method(*standard, *asked, *choice);
-    bands.robust = &robust.emplace(std::move(*choice));
-  }
-  const solver::Method* chosen = by_block ? by_block.get() : asked.get();
-  std::optional<Gloss> gloss;
-  if (method.level == solver::Level::kRobust) {
-    Result<Gloss> found = Gloss::find(photographs, *chosen, nullptr, context);
-    if (!found) return std::move(found).error();
-    facts.gloss = found->facts;
-    facts.work.lobe = found->facts.seconds;
-    chosen = &gloss.emplace(std::move(*found)).over(*chosen);
-  }
-  if (Result<void> ok = solve_tiles(photographs, *chosen, tile, context, sink, bands, facts); !ok)
-    return std::move(ok).error();
-  if (Result<void> ok = check(photographs, *chosen, context, facts); !ok) return std::move(ok).error();
-  return facts;
-}
-
 }  // namespace
 
 Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::MethodName& method,
                                const TileOptions& tile, const JobContext& context, const BandSink& sink) {
-  const Planes planes = method.make()->wants_rgb() ? Planes() : photographs.planes();
-  BandSink next = sink;
-  std::optional<Deblur> deblur;
-  if (photographs.spread) {
-    deblur.emplace(photographs.size, planes, *photographs.spread, context.threads, sink);
-    next = [&](const MapBand& band) { return deblur->put(band); };
-  }
-  std::optional<Realign> realign;
-  if (photographs.lateral && photographs.camera && planes.count == 1) {
-    realign.emplace(photographs.size, planes.cfa, *photographs.lateral, *photographs.camera, context.threads,
-                    next);
-  }
-  const BandSink aligned = [&](const MapBand& band) { return realign->put(band); };
+  return solve_by(stages_of(method), photographs, tile, context, sink);
+}
+
+Result<FrameFacts> solve_by(std::span<const Stage> stages, const Photographs& photographs,
+                            const TileOptions& tile, const JobContext& context, const BandSink& sink) {
+  Solving solving = {photographs, tile, context, sink};
+  FrameFacts& facts = solving.facts;
   Stopwatch watch;
-  Result<FrameFacts> facts = solve_as_seen(photographs, method, tile, context, realign ? aligned : next);
-  if (facts) facts->work.frame = watch.lap() - facts->waited_seconds - facts->work.total();
-  if (facts && deblur) facts->deblur = deblur->facts();
-  if (facts && realign) {
-    facts->lateral_corner_px = {shift_at_corner(photographs.lateral->red, *photographs.camera),
-                                shift_at_corner(photographs.lateral->blue, *photographs.camera)};
+  double total = 0;
+  for (const Stage& stage : stages) {
+    if (stage.is_needed && !stage.is_needed(solving)) continue;
+    if (Result<void> ok = stage.apply(solving); !ok) return std::move(ok).error();
+    facts.costs.push_back({stage.name, watch.lap()});
+    total += facts.costs.back().seconds;
   }
-  return facts;
+  facts.work.frame = total - facts.waited_seconds - facts.work.total();
+  return std::move(facts);
+}
+
+std::vector<Stage> without(std::string_view name, std::vector<Stage> stages) {
+  std::erase_if(stages, [&](const Stage& stage) { return stage.name == name; });
+  return stages;
 }
 
 Result<Photographs> half_size(const Photographs& photographs, int threads) {

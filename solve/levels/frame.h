@@ -3,6 +3,8 @@
 
 #include <array>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/base/job.h"
 #include "core/base/result.h"
@@ -18,25 +20,30 @@
 
 namespace weft::pipeline {
 
-/// What solving a frame said.
-struct FrameFacts {
-  double waited_seconds = 0;  ///< seconds that bands waited for the sink
-  SolveWork work;             ///< all other seconds
-  solver::SolveTally tally;
-  std::optional<ReferenceFacts> reference = {};  ///< where the level is reference
-  /// Of `robust` and `reference`: the share of blocks on which `robust` predicts left-out light better than
-  /// `standard`, which solves the others.
-  std::optional<double> robust_share = {};
-  std::optional<GlossFacts> gloss = {};  ///< of `robust` and `reference`
-  /// On patches that chose nothing.
-  std::optional<solver::LeftOut> left_out = {};
-  std::optional<DeblurFacts> deblur = {};  ///< where the spread of the lens is known
-  /// Where lateral colour was taken out: how much farther out red and blue look in the corner, pixels.
-  std::optional<std::array<double, 2>> lateral_corner_px = {};
+struct StageCost {
+  std::string name;
+  double seconds = 0;  ///< of `solve` with those that its bands waited
 };
 
-/// Solves a frame by a level or method, whatever it extends over. Maps of mosaics are aligned by
-/// photographs.lateral, and all are sharpened by photographs.spread.
+/// What solving a frame said.
+struct FrameFacts {
+  std::vector<StageCost> costs;  ///< of each stage that ran, in order
+  double waited_seconds = 0;     ///< seconds that bands waited for the sink
+  SolveWork work;                ///< all other seconds
+  solver::SolveTally tally;
+  // By the stage that found it; none where it did not run.
+  std::optional<DeblurFacts> deblur = {};  ///< sharpen
+  /// realign: how much farther out red and blue look in the corner, pixels.
+  std::optional<std::array<double, 2>> lateral_corner_px = {};
+  /// blocks: the share of them on which `robust` predicts left-out light better than `standard`.
+  std::optional<double> robust_share = {};
+  std::optional<GlossFacts> gloss = {};          ///< lobe: of the readings that were solved
+  std::optional<ReferenceFacts> reference = {};  ///< gates and what follows them
+  /// check, on patches that chose nothing; after a comparison on few rows of them (solve/correction).
+  std::optional<solver::LeftOut> left_out = {};
+};
+
+/// Solves a frame by the stages of a level or method (solve/levels/stages.h).
 Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::MethodName& method,
                                const TileOptions& tile, const JobContext& context, const BandSink& sink);
 

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/levels/reference.h"
 
-#include <algorithm>
 #include <functional>
 #include <memory>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "core/base/vec.h"
 #include "solve/correction/left_out.h"
+#include "solve/correction/light_choice.h"
+#include "solve/levels/stages.h"
 #include "solve/photographs/picture_axes.h"
 #include "solve/photographs/samples.h"
-#include "solver/height/height.h"
 
 namespace weft::pipeline {
 namespace {
@@ -70,258 +69,165 @@ double expected_turn(double before, double last) {
   return before > last ? last * last / before : last;
 }
 
-// One round: a frame, its relief, what its light does to readings, and a solve of what is left of them.
-class Round {
- public:
-  // The others must outlive it.
-  Round(const Photographs& photographs, SolvedFrame frame, const ReferenceOptions& options,
-        const JobContext& context)
-      : solved(std::move(frame)), photographs_(photographs), options_(options), context_(context) {}
+Result<void> open_gates(Solving& s) {
+  Stopwatch watch;
+  Result<solver::Gates> gates = measure_gates(
+      solve_samples(s.photographs, *solver::standard_method(), s.context.threads), s.photographs);
+  if (!gates) return std::move(gates).error();
+  s.light = {gates->shadows(), gates->interreflection()};
+  s.facts.reference.emplace().gates = std::move(*gates);
+  s.facts.work.samples += watch.lap();
+  return {};
+}
 
-  Result<void> integrate() {
-    Stopwatch watch;
-    solver::HeightOptions options;
-    options.threads = context_.threads;
-    Result<solver::Height> height = solver::height_from_normals(
-        {solved.normal.plane(0), solved.normal.plane(1), solved.normal.plane(2)}, {}, options);
-    if (!height) return std::move(height).error();
-    facts.slope_residual_rms = height->slope_residual_rms;
-    height_ = std::move(height->height_mm);
-    Result<solver::Relief> relief = solver::Relief::of(height_.plane(), 1);
-    if (!relief) return std::move(relief).error();
-    relief_ = *relief;
-    facts.height_seconds = watch.lap();
+// Solves the frame by what the stages before have found. What follows is judged against that.
+Result<void> find_relief(const ReferenceOptions& options, Solving& s) {
+  s.below = {s.method, s.facts.gloss};
+  if (!s.facts.reference) s.facts.reference.emplace();
+  FrameKeeper frame(s.photographs, nullptr);
+  const Result<double> solved = solve_bands(s.photographs, *s.method, s.tile, s.context, std::ref(frame));
+  if (!solved) return solved.error();
+  Result<std::shared_ptr<SolvedRelief>> relief =
+      SolvedRelief::of(s.photographs, std::move(frame.frame), options, s.context.threads);
+  if (!relief) return std::move(relief).error();
+  s.relief = std::move(*relief);
+  s.relief->facts.stages = s.light;
+  return {};
+}
+
+// Leaves in `light` what earns its place by this relief.
+Result<LightChoice> choose_by(SolvedRelief& relief, Solving& s) {
+  Stopwatch watch;
+  LightCorrection correction = relief.correction_of(s.light);
+  Result<LightChoice> choice =
+      choose_light(s.photographs, *s.method, relief.solved, correction, s.light, s.context);
+  if (choice) s.light = relief.facts.stages = choice->stages;
+  s.facts.work.choice += watch.lap();
+  return choice;
+}
+
+Result<void> choose_by_first_relief(Solving& s) {
+  Result<LightChoice> choice = choose_by(*s.relief, s);
+  if (!choice) return std::move(choice).error();
+  s.facts.reference->choice = *choice;
+  if (!s.light.any()) s.relief.reset();
+  return {};
+}
+
+// The better the relief, the better the scale of the albedo is known.
+bool has_scale_to_find(const Solving& s) {
+  return s.facts.reference->choice.stages.any() && s.light.interreflection &&
+         s.photographs.albedo_scale == AlbedoScale::kRelative;
+}
+
+// Solves what the light of a relief leaves of the readings, and says in its facts how that turned normals.
+Result<SolvedFrame> solve_early(SolvedRelief& round, const Solving& s) {
+  FrameKeeper frame(s.photographs, &round.solved);
+  LightCorrection correction = round.early_correction();
+  const Result<double> solved =
+      solve_bands(s.photographs, *s.method, s.tile, s.context, std::ref(frame), {.correction = &correction});
+  if (!solved) return solved.error();
+  round.facts.turned_deg = frame.mean_turn_deg();
+  return std::move(frame.frame);
+}
+
+// Rounds until the normals settle, or a round is refused.
+Result<void> approach(Solving& s) {
+  std::vector<ReferenceRound>& rounds = s.facts.reference->rounds;
+  const ReferenceOptions options = s.relief->options;
+  std::shared_ptr<SolvedRelief> round = s.relief;
+  for (bool settled = false; !settled && static_cast<int>(rounds.size()) + 1 < options.most_rounds;) {
+    Result<SolvedFrame> frame = solve_early(*round, s);
+    if (!frame) return std::move(frame).error();
+    const double before = rounds.empty() ? 0 : rounds.back().turned_deg, turned = round->facts.turned_deg;
+    settled = expected_turn(before, turned) < options.settled_deg;
+    round->facts.is_refused = !settled && before > 0 && turned >= before;
+    rounds.push_back(round->facts);
+    if (round->facts.is_refused) return {};
+    s.relief = std::move(round);
+    Result<std::shared_ptr<SolvedRelief>> next =
+        SolvedRelief::of(s.photographs, std::move(*frame), options, s.context.threads);
+    if (!next) return std::move(next).error();
+    round = std::move(*next);
+    round->facts.stages = s.light;
+    if (!has_scale_to_find(s)) continue;
+    if (Result<LightChoice> choice = choose_by(*round, s); !choice) return std::move(choice).error();
+    if (!s.light.any()) return {};
+  }
+  s.relief = std::move(round);
+  return {};
+}
+
+// Drops the relief where the level below predicts left-out light better.
+Result<void> compare_with_below(Solving& s) {
+  Stopwatch watch;
+  const std::vector<solver::Patch> few =
+      of_few_rows(solver::patches_of(s.photographs.size, solver::PatchUse::kReport), s.photographs.size);
+  LightCorrection correction = s.relief->correction();
+  Result<solver::LeftOut> left_out =
+      leave_out_lights(s.photographs, {.method = s.method, .correction = &correction}, few, s.context);
+  if (!left_out) return std::move(left_out).error();
+  const Result<solver::LeftOut> of_below =
+      leave_out_lights(s.photographs, {.method = s.below.method}, few, s.context);
+  if (!of_below) return of_below.error();
+  s.facts.work.few_rows += watch.lap();
+  ReferenceFacts& facts = *s.facts.reference;
+  facts.over_robust = gain_of_correction(*of_below, *left_out);
+  facts.robust_is_published = facts.over_robust.mean < 0;
+  if (!facts.robust_is_published) {
+    s.facts.left_out = std::move(*left_out);
     return {};
   }
+  s.relief.reset();
+  s.method = s.below.method;
+  s.facts.gloss = s.below.gloss;
+  if (s.facts.gloss) s.facts.gloss->seconds = s.facts.work.lobe;
+  return {};
+}
 
-  // Sets `stages` to those of the candidates that earn their place.
-  Result<LightChoice> choose(const LightStages& candidates, const solver::Method& method) {
-    Stopwatch watch;
-    LightCorrection correction = correct(candidates);
-    Result<LightChoice> choice = choose_light(photographs_, method, solved, correction, candidates, context_);
-    if (choice) facts.stages = choice->stages;
-    facts.choice_seconds = watch.lap();
-    return choice;
-  }
-
-  Result<double> solve(const solver::Method& method, const TileOptions& tile, bool is_last,
-                       const BandSink& sink, BandOptions options) {
-    Stopwatch watch;
-    LightCorrection correction = correct(facts.stages, is_last);
-    reach_is_capped = correction.shadow_reach_is_capped();
-    options.correction = &correction;
-    Result<double> waited = solve_bands(photographs_, method, tile, context_, sink, options);
-    facts.light_seconds = correction.seconds();
-    facts.solve_seconds = watch.lap() - correction.seconds();
-    return waited;
-  }
-
-  Result<solver::LeftOut> leave_out_lights_of(std::span<const solver::Patch> patches,
-                                              const solver::Method& method) const {
-    LightCorrection correction = correct(facts.stages);
-    return leave_out_lights(photographs_, {.method = &method, .correction = &correction}, patches, context_);
-  }
-
-  Result<Gloss> find_gloss(const solver::Method& base) const {
-    LightCorrection correction = correct(facts.stages);
-    return Gloss::find(photographs_, base, &correction, context_);
-  }
-
-  ReferenceRound facts;
-  SolvedFrame solved;
-  bool reach_is_capped = false;
-
- private:
-  LightCorrection correct(const LightStages& stages, bool is_last = true) const {
-    const int directions = is_last ? options_.directions : options_.early_directions;
-    const int steps = is_last ? options_.steps : options_.early_steps;
-    return {photographs_, solved, relief_, {stages, directions, steps, options_.reach_px}, context_.threads};
-  }
-
-  const Photographs& photographs_;
-  const ReferenceOptions& options_;
-  const JobContext& context_;
-  Image<float> height_;
-  solver::Relief relief_;
-};
-
-// A solve under way.
-class Reference {
- public:
-  Reference(const Photographs& photographs, const TileOptions& tile, const ReferenceOptions& options,
-            const JobContext& context)
-      : photographs_(photographs), tile_(tile), options_(options), context_(context) {}
-
-  // By which method each block is solved.
-  Result<void> choose_methods() {
-    Result<solver::BlockChoice> choice = choose_by_block(photographs_, {.method = standard_.get()},
-                                                         {.method = robust_method_.get()}, context_);
-    if (!choice) return std::move(choice).error();
-    facts.robust_share = choice->share();
-    method_ = solver::blended_method(*standard_, *robust_method_, *choice);
-    robust_ = std::move(*choice);
-    Result<Gloss> gloss = Gloss::find(photographs_, *method_, nullptr, context_);
-    if (!gloss) return std::move(gloss).error();
-    facts.work.lobe += gloss->facts.seconds;
-    facts.gloss = gloss->facts;
-    gloss_ = std::move(*gloss);
-    below_ = &gloss_->over(*method_);
-    return {};
-  }
-
-  Result<void> find_candidates() {
-    Stopwatch watch;
-    Result<solver::Gates> gates = measure_gates(
-        solve_samples(photographs_, *solver::standard_method(), context_.threads), photographs_);
-    if (!gates) return std::move(gates).error();
-    facts.gates = *gates;
-    facts.stages = {options_.force_stages || gates->shadows(),
-                    options_.force_stages || gates->interreflection()};
-    facts.work.samples = watch.lap();
-    return {};
-  }
-
-  // Rounds until the normals settle, or a round is refused. The last solve is of readings corrected by
-  // `last_`, if there is one.
-  Result<void> approach() {
-    FrameKeeper first(photographs_, nullptr);
-    if (const auto solved = solve_bands(photographs_, *below_, tile_, context_, std::ref(first)); !solved) {
-      return solved.error();
-    }
-    SolvedFrame frame = std::move(first.frame);
-    for (bool settled = false;;) {
-      auto round = std::make_unique<Round>(photographs_, std::move(frame), options_, context_);
-      if (Result<void> ok = round->integrate(); !ok) return ok;
-      if (Result<void> ok = choose(*round); !ok) return ok;
-      if (!facts.stages.any()) return {};
-      const bool done = settled || static_cast<int>(facts.rounds.size()) + 1 >= options_.most_rounds;
-      if (done) {
-        last_ = std::move(round);
-        return {};
-      }
-      FrameKeeper next(photographs_, &round->solved);
-      const Result<double> solved = round->solve(*below_, tile_, /*is_last=*/false, std::ref(next), {});
-      if (!solved) return solved.error();
-      ReferenceRound& now = round->facts;
-      now.turned_deg = next.mean_turn_deg();
-      const double before = facts.rounds.empty() ? 0 : facts.rounds.back().turned_deg;
-      settled = expected_turn(before, now.turned_deg) < options_.settled_deg;
-      now.is_refused = !settled && before > 0 && now.turned_deg >= before;
-      facts.rounds.push_back(now);
-      if (now.is_refused) return {};
-      last_ = std::move(round);
-      frame = std::move(next.frame);
-    }
-  }
-
-  // Drops the last round where the level below predicts left-out light better.
-  Result<void> hold_against_below() {
-    Stopwatch watch;
-    const std::vector<solver::Patch> few =
-        of_few_rows(solver::patches_of(photographs_.size, solver::PatchUse::kReport), photographs_.size);
-    Result<Gloss> gloss = last_->find_gloss(*method_);
-    if (!gloss) return std::move(gloss).error();
-    const solver::Method& method = gloss->over(*method_);
-    Result<solver::LeftOut> left_out = last_->leave_out_lights_of(few, method);
-    if (!left_out) return std::move(left_out).error();
-    const Result<solver::LeftOut> of_below =
-        leave_out_lights(photographs_, {.method = below_}, few, context_);
-    if (!of_below) return of_below.error();
-    facts.work.lobe += gloss->facts.seconds;
-    facts.work.few_rows += watch.lap() - gloss->facts.seconds;
-    facts.over_robust = gain_of_correction(*of_below, *left_out);
-    facts.robust_is_published = !options_.force_stages && facts.over_robust.mean < 0;
-    gloss->facts.seconds += facts.gloss.seconds;
-    if (facts.robust_is_published) {
-      facts.gloss.seconds = gloss->facts.seconds;
-      last_.reset();
-      return {};
-    }
-    facts.gloss = gloss->facts;
-    last_gloss_ = std::move(*gloss);
-    last_method_ = &method;
-    facts.left_out = std::move(*left_out);
-    return {};
-  }
-
-  Result<void> finish(const BandSink& sink) {
-    facts.stages = last_ ? last_->facts.stages : LightStages{};
-    const BandOptions bands = {.tally = &facts.tally,
-                               .model = solver::ModelTraits{.bounces_are_out = facts.stages.interreflection},
-                               .robust = &*robust_};
-    const Result<double> waited = last_ ? last_->solve(*last_method_, tile_, /*is_last=*/true, sink, bands)
-                                        : solve_bands(photographs_, *below_, tile_, context_, sink, bands);
-    if (!waited) return waited.error();
-    facts.waited_seconds = *waited;
-    if (!last_) return check();
-    facts.rounds.push_back(last_->facts);
-    facts.rounds.back().turned_deg = 0;
-    facts.shadow_reach_is_capped = last_->reach_is_capped;
-    return {};
-  }
-
-  bool goes_beyond_robust() const { return last_ != nullptr; }
-
-  ReferenceFacts facts;
-
- private:
-  // Leaves in facts.stages what earns its place by the relief of the first round, and of each where the scale
-  // of the albedo has to be found: the better the relief, the better it is known.
-  Result<void> choose(Round& round) {
-    const bool is_chosen = !facts.rounds.empty() && (!facts.stages.interreflection ||
-                                                     photographs_.albedo_scale == AlbedoScale::kAbsolute);
-    if (options_.force_stages || is_chosen) {
-      round.facts.stages = facts.stages;
-      return {};
-    }
-    Result<LightChoice> choice = round.choose(facts.stages, *below_);
-    if (!choice) return std::move(choice).error();
-    facts.work.choice += round.facts.choice_seconds;
-    facts.stages = choice->stages;
-    if (facts.rounds.empty()) facts.choice = *choice;
-    return {};
-  }
-
-  // Leaves lights out of the level below.
-  Result<void> check() {
-    Result<solver::LeftOut> left_out =
-        leave_out_lights(photographs_, {.method = below_},
-                         solver::patches_of(photographs_.size, solver::PatchUse::kReport), context_);
-    if (!left_out) return std::move(left_out).error();
-    facts.left_out = std::move(*left_out);
-    return {};
-  }
-
-  const Photographs& photographs_;
-  const TileOptions& tile_;
-  const ReferenceOptions& options_;
-  const JobContext& context_;
-  const std::unique_ptr<solver::Method> standard_ = solver::standard_method(),
-                                        robust_method_ = solver::robust_method();
-  std::unique_ptr<solver::Method> method_;   ///< the two, by block
-  std::optional<Gloss> gloss_, last_gloss_;  ///< of readings as they are, and as the last round corrects them
-  /// `method_` with the lobe of each, where there is one; `below_` is the level robust.
-  const solver::Method *below_ = nullptr, *last_method_ = nullptr;
-  std::optional<solver::BlockChoice> robust_;  ///< where the better of the two solves
-  std::unique_ptr<Round> last_;
-};
+Result<void> correct_readings(Solving& s) {
+  LightCorrection& correction = s.keep(correction_by_relief(s));
+  ReferenceFacts& facts = *s.facts.reference;
+  facts.stages = s.relief->facts.stages;
+  facts.rounds.push_back(s.relief->facts);
+  facts.rounds.back().turned_deg = 0;
+  facts.shadow_reach_is_capped = correction.shadow_reach_is_capped();
+  s.bands.correction = &correction;
+  s.bands.model->bounces_are_out = facts.stages.interreflection;
+  return {};
+}
 
 }  // namespace
 
-Result<ReferenceFacts> solve_reference(const Photographs& photographs, const TileOptions& tile,
-                                       const ReferenceOptions& options, const JobContext& context,
-                                       const BandSink& sink) {
-  Reference reference(photographs, tile, options, context);
-  if (Result<void> ok = reference.choose_methods(); !ok) return std::move(ok).error();
-  if (Result<void> ok = reference.find_candidates(); !ok) return std::move(ok).error();
-  if (reference.facts.stages.any()) {
-    if (Result<void> ok = reference.approach(); !ok) return std::move(ok).error();
-  }
-  if (reference.goes_beyond_robust()) {
-    if (Result<void> ok = reference.hold_against_below(); !ok) return std::move(ok).error();
-  }
-  if (Result<void> ok = reference.finish(sink); !ok) return std::move(ok).error();
-  return std::move(reference.facts);
+Stage gates_stage() {
+  return {
+      "gates", "tells on sample tiles whether shadows or bounces can be worth taking out", {}, open_gates};
+}
+
+Stage relief_stage(const ReferenceOptions& options) {
+  return {"relief", "solves the frame and integrates its normals to the heights that cast and throw light",
+          [](const Solving& s) { return s.light.any(); },
+          [options](Solving& s) { return find_relief(options, s); }};
+}
+
+Stage choice_stage() {
+  return {"choice", "keeps of shadows and bounces what predicts left-out light better", has_relief,
+          choose_by_first_relief};
+}
+
+Stage rounds_stage() {
+  return {"rounds", "solves what they leave of the readings and integrates again, until normals settle",
+          has_relief, approach};
+}
+
+Stage comparison_stage() {
+  return {"comparison", "goes back to the level below where that predicts left-out light better", has_relief,
+          compare_with_below};
+}
+
+Stage correction_stage() {
+  return {"correction", "takes shadows and bounces of the last relief out of the readings", has_relief,
+          correct_readings};
 }
 
 }  // namespace weft::pipeline

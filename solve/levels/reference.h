@@ -4,18 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/base/job.h"
-#include "core/base/result.h"
-#include "core/image/tiles.h"
-#include "solve/bands/bands.h"
 #include "solve/correction/light_choice.h"
 #include "solve/correction/light_correction.h"
-#include "solve/gloss/gloss.h"
-#include "solve/levels/work.h"
-#include "solve/photographs/photographs.h"
 #include "solver/gates/gates.h"
 #include "solver/left_out/left_out.h"
-#include "solver/method.h"
 
 namespace weft::pipeline {
 
@@ -28,7 +20,6 @@ struct ReferenceOptions {
   int steps = 16;                             ///< as of solver::SliceSettings
   int early_directions = 6, early_steps = 8;  ///< before the last round
   int reach_px = 64;
-  bool force_stages = false;  ///< whatever gates and left-out light say: for measurements
 };
 
 /// What one round did.
@@ -38,49 +29,39 @@ struct ReferenceRound {
   /// Turned the normals by no less than the round before: its normals are not used.
   bool is_refused = false;
   double slope_residual_rms = 0;  ///< how far the normals before were from any surface (solver/height)
-  double height_seconds = 0, choice_seconds = 0, light_seconds = 0, solve_seconds = 0;
 };
 
+/// What the stages of the level reference found, beside what every level says (FrameFacts).
 struct ReferenceFacts {
   solver::Gates gates;
-  LightChoice choice;  ///< of the first round; of none where no gate is open or stages were forced
-  LightStages stages;  ///< that the last solve took out
-  std::vector<ReferenceRound> rounds;  ///< the last solve at their end, unless `robust` is published
+  LightChoice choice;                  ///< by the first relief; of none where no gate is open
+  LightStages stages;                  ///< that the solve took out
+  std::vector<ReferenceRound> rounds;  ///< the solve at their end, unless `robust` is published
   bool shadow_reach_is_capped = false;
-  /// Left-out light by what the last round would give, over that by the level below; without patches where
+  /// Left-out light by what the solve would give, over that by the level below; without patches where
   /// nothing was to be taken out.
   solver::Gain over_robust;
   bool robust_is_published = false;  ///< it predicts better: `stages` are none
-  double robust_share = 1;           ///< of the frame; the rest is solved as the standard level does
-  GlossFacts gloss;                  ///< of the readings that the last solve used
-  /// Of the readings that the last solve used, on patches that chose nothing but between it and `robust`.
-  solver::LeftOut left_out;
-  solver::SolveTally tally;   ///< of the last solve
-  double waited_seconds = 0;  ///< for the sink
-  SolveWork work;             ///< but for what grows with the frame
 };
 
-/// The reference level: `robust`, then its normals integrated to a height, readings corrected for the shadows
-/// and the light that this relief casts on itself (LightCorrection), and solved again, until they settle.
-/// Gates (solver/gates) spare the work where nothing can be won; beyond them each effect is taken out only
-/// where left-out light is predicted better without it (choose_light). A round that turns
-/// the normals no less than the one before is refused: the last good one stands. As at the robust level,
-/// blocks where `robust` predicts left-out light no better are solved as `standard` does. Pixels are solved
-/// in double where their conditioning asks for it, as at any level. Without an effect there is but one solve.
-///
-/// What the last round would give is held against the level below on patches that chose nothing before. Where
-/// that predicts left-out light better, by however little, its solution is the one that is published.
-///
-/// The lobe of a glossy cloth (solve/gloss/gloss.h) is found before the first round, so that relief and
-/// bounces follow normals that highlights did not turn, and again for the last solve once bounces are out.
-///
-/// Relief and its light are taken in pixels and by the axes of the picture (picture_axes.h), so neither the
-/// scale nor the camera's roll matters; it must look nearly straight down.
-Result<ReferenceFacts> solve_reference(const Photographs& photographs, const TileOptions& tile,
-                                       const ReferenceOptions& options, const JobContext& context,
-                                       const BandSink& sink);
+// The stages of the level reference, after those of robust.
+//
+// `gates` (solver/gates) spare the work where nothing can be won. `relief` solves the frame and integrates
+// its normals to a height; from then on readings are corrected for the shadows and the light that this
+// relief casts on itself (LightCorrection). `choice` keeps each effect only where left-out light is predicted
+// better without it (choose_light). `rounds` solve and integrate again, until normals settle. A round that
+// turns the normals no less than the one before is refused: the last good one stands.
+//
+// The lobe of a glossy cloth (solve/gloss/gloss.h) is found before the first relief, so that relief and
+// bounces follow normals that highlights did not turn, and again by `second lobe` once bounces are out.
+//
+// `comparison` holds what the solve would give against the level below, on patches that chose nothing before.
+// Where that predicts left-out light better, by however little, its solution is the one that is published.
+//
+// Relief and its light are taken in pixels and by the axes of the picture (picture_axes.h), so neither the
+// scale nor the camera's roll matters; it must look nearly straight down.
 
-/// Bytes a pixel that solve_reference holds beside the photographs and the bands of any level: three solved
+/// Bytes a pixel that the level holds beside the photographs and the bands of any level: three solved
 /// frames, two heights, and what integrating and tracing take (33 measured at 1.6 megapixels with ten
 /// lights).
 constexpr std::uint64_t reference_bytes_a_pixel(int planes) {

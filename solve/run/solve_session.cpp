@@ -27,6 +27,7 @@
 #include "solve/gloss/sample_gloss.h"
 #include "solve/levels/frame.h"
 #include "solve/levels/shifts.h"
+#include "solve/levels/stages.h"
 #include "solve/report/left_out_report.h"
 #include "solve/report/reflectance_report.h"
 #include "solve/report/solve_report.h"
@@ -208,7 +209,6 @@ class Run {
     Result<LoadedSession> loaded = input_.load();
     if (!loaded) return std::move(loaded).error();
     photographs_ = std::move(loaded->photographs);
-    if (!options_.deblur) photographs_.spread.reset();
     facts_.conditions = facts_of(loaded->conditions);
     warnings_ = std::move(loaded->warnings);
     fullness_ = pipeline::fullness_of(photographs_);
@@ -262,7 +262,9 @@ class Run {
       if (options_.previews) pictures_->add(band.maps);
       return files->write(band.maps, band.sigma);
     };
-    Result<pipeline::FrameFacts> frame = solve_frame(photographs_, method_, options_.tile, context_, keep);
+    std::vector<pipeline::Stage> stages = pipeline::stages_of(method_);
+    if (!options_.deblur) stages = pipeline::without("sharpen", std::move(stages));
+    Result<pipeline::FrameFacts> frame = solve_by(stages, photographs_, options_.tile, context_, keep);
     if (!frame) return std::move(frame).error();
     seconds_.work = frame->work;
     seconds_.solve = watch_.lap() - frame->waited_seconds;

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "solve/levels/stages.h"
 #include "solver/method.h"
 #include "tests/core/places.h"
 #include "tests/repository/source_tree.h"
@@ -132,6 +133,27 @@ TEST(Docs, TheReadmeHasEveryLevelInItsOrder) {
     }
   }
   EXPECT_EQ(rows, levels);
+}
+
+/// The first level whose list has the stage.
+std::string least_level_with(const std::string& stage) {
+  for (const solver::MethodName& each : solver::method_names()) {
+    const std::vector<pipeline::Stage> stages = pipeline::stages_of(each);
+    if (each.level && std::ranges::find(stages, stage, &pipeline::Stage::name) != stages.end())
+      return each.name;
+  }
+  return "";
+}
+
+TEST(Docs, ThePageOnAccuracyHasTheStagesOfTheLevelsInTheirOrder) {
+  std::string table = "| stage | from | what it does |\n|---|---|---|\n";
+  const std::vector<pipeline::Stage> all = pipeline::stages_of(solver::method_of(solver::Level::kReference));
+  for (auto stage = all.begin() + 1; stage != all.end(); ++stage)
+    table += "| `" + stage->name + "` | `" + least_level_with(stage->name) + "` | " + stage->does + " |\n";
+  const auto each = pages();
+  const auto page = std::ranges::find(each, "docs/accuracy.md", &TextFile::path);
+  ASSERT_NE(page, each.end());
+  EXPECT_THAT(page->text, testing::HasSubstr(table + "\n"));
 }
 
 /// A code is a word for a sentence: the sentence is said somewhere, and the page has the word.

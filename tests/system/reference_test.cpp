@@ -16,6 +16,7 @@
 #include "solve/input/session_input.h"
 #include "solve/levels/frame.h"
 #include "solve/levels/reference.h"
+#include "solve/levels/stages.h"
 #include "solve/run/facts_json.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
@@ -173,12 +174,14 @@ TEST_F(ReferenceLevel, IsNoWorseOnAShallowWeaveOfUnknownAlbedo) {
 TEST_F(ReferenceLevel, RefusesARoundThatTurnsNormalsMoreThanTheOneBefore) {
   photograph(scene_named("deep", kSize));
   const pipeline::Photographs dark = photographs(0.2);
-  Solved forced(kSize);
-  const auto facts = pipeline::solve_reference(dark, pipeline::kSolveTile, {.force_stages = true},
-                                               {.threads = 2}, std::ref(forced));
+  std::vector<pipeline::Stage> forced = pipeline::stages_of(solver::method_of(solver::Level::kReference));
+  for (const char* judge : {"gates", "choice", "comparison"})
+    forced = pipeline::without(judge, std::move(forced));
+  Solved solved(kSize);
+  const auto facts = pipeline::solve_by(forced, dark, pipeline::kSolveTile, {.threads = 2}, std::ref(solved));
   ASSERT_TRUE(facts) << facts.error().message();
   int refused = 0;
-  for (const pipeline::ReferenceRound& round : facts->rounds) refused += round.is_refused;
+  for (const pipeline::ReferenceRound& round : facts->reference->rounds) refused += round.is_refused;
   EXPECT_EQ(refused, 1) << "albedo is taken for five times what it is";
 }
 
@@ -188,9 +191,10 @@ TEST_F(ReferenceLevel, LooksCoarselyUntilTheLastRoundAndTakesNoneThatWouldTurnNo
   const auto error_and_rounds = [&](const pipeline::ReferenceOptions& options) {
     Solved solved(kSize);
     const auto facts =
-        pipeline::solve_reference(taken, pipeline::kSolveTile, options, {.threads = 2}, std::ref(solved));
+        pipeline::solve_by(pipeline::stages_of(solver::method_of(solver::Level::kReference), options), taken,
+                           pipeline::kSolveTile, {.threads = 2}, std::ref(solved));
     EXPECT_TRUE(facts) << facts.error().message();
-    return std::pair(mean_angle_deg(solved.normal, truth_), facts->rounds.size());
+    return std::pair(mean_angle_deg(solved.normal, truth_), facts->reference->rounds.size());
   };
   const auto [by_all, all] = error_and_rounds({.settled_deg = 0, .early_directions = 12, .early_steps = 16});
   const auto [error, rounds] = error_and_rounds({});
