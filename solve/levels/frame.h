@@ -22,12 +22,12 @@ namespace weft::pipeline {
 
 struct StageCost {
   std::string name;
-  double seconds = 0;  ///< of `solve` with those that its bands waited
+  double seconds = 0;  ///< in those of `solve` its bands also wait for the sink
 };
 
 /// What solving a frame said.
 struct FrameFacts {
-  std::vector<StageCost> costs;  ///< of each stage that ran, in order
+  std::vector<StageCost> costs;  ///< each stage that ran, in order
   double waited_seconds = 0;     ///< seconds that bands waited for the sink
   SolveWork work;                ///< all other seconds
   solver::SolveTally tally;

@@ -64,7 +64,7 @@ class FrameKeeper {
   double turned_deg_ = 0;
 };
 
-// Of the round after two, degrees; `before` is 0 where there was no round before the last.
+// The turn of the round after two, degrees; `before` is 0 where there was no round before the last.
 double expected_turn(double before, double last) {
   return before > last ? last * last / before : last;
 }

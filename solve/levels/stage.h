@@ -35,8 +35,8 @@ struct Solving {
 
   const solver::Method* method = nullptr;   ///< by which the frame is solved
   const solver::Method* lambert = nullptr;  ///< the same without lobes, where they have been looked for
-  BandOptions bands = {};                   ///< of the solve
-  /// Of the cloth on itself, as far as it may be worth taking out of the readings.
+  BandOptions bands = {};                   ///< it is solved with them
+  /// What the cloth does to its own light, as far as that may be worth taking out of the readings.
   LightStages light = {.shadows = true, .interreflection = true};
   std::shared_ptr<SolvedRelief> relief = {};  ///< readings go through its correction, if there is one
   /// What stood before there was a relief.

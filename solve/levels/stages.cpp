@@ -55,7 +55,7 @@ Result<void> choose_blocks(Solving& s) {
   return {};
 }
 
-// Of readings as they are, or as a relief corrects them: then blocks are chosen on few rows.
+// Reads through the correction of the relief, if there is one: blocks are then chosen on few rows.
 Result<void> find_lobe(Solving& s) {
   Stopwatch watch;
   if (s.lambert == nullptr) s.lambert = s.method;
