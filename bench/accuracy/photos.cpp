@@ -16,6 +16,7 @@
 #include "core/image_io/image_io.h"
 #include "material/read/compare.h"
 #include "simulator/sampling/random.h"
+#include "solve/input/load.h"
 #include "solve/input/photo_input.h"
 #include "solve/levels/frame.h"
 #include "solve/photographs/cut.h"
@@ -32,7 +33,7 @@ struct Truth {
   Rect around;  ///< the least rectangle with all of them
 };
 
-Result<Truth> read_truth(const app::PhotoPlan& plan, const std::filesystem::path& folder) {
+Result<Truth> read_truth(const pipeline::SolvePlan& plan, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "normal_gt.exr";
   Result<LoadedImage> normal = read_image(file);
   if (!normal) return std::move(normal).error();
@@ -173,10 +174,11 @@ Result<Json> row_of(const solver::MethodName& name, const pipeline::Photographs&
               {"threads", threads}};
 }
 
-Result<std::vector<std::vector<int>>> choose_subsets(const app::PhotoPlan& plan,
+Result<std::vector<std::vector<int>>> choose_subsets(const pipeline::SolvePlan& plan,
                                                      const PhotosOptions& options) {
   std::vector<Vec3> directions;
-  for (const DistantLight& light : plan.lights.lights) directions.push_back(light.direction);
+  for (const DistantLight& light : std::get<DistantLights>(*plan.calibration.lights).lights)
+    directions.push_back(light.direction);
   const auto lights = static_cast<int>(directions.size());
   if (options.pick == 0) {
     std::vector<int> all(directions.size());
@@ -249,7 +251,7 @@ Result<Rows> photos_table(const PhotosOptions& options) {
   if (!methods) return methods.error();
   app::PhotoOptions photos;
   photos.folder = options.folder;
-  Result<app::PhotoPlan> plan = app::plan_photos(photos);
+  Result<pipeline::SolvePlan> plan = app::plan_photos(photos);
   if (!plan) return std::move(plan).error();
   const auto subsets = choose_subsets(*plan, options);
   if (!subsets) return subsets.error();
@@ -263,7 +265,7 @@ Result<Rows> photos_table(const PhotosOptions& options) {
     plan->clipped = keep ? app::Clipped::kKeep : app::Clipped::kMark;
     JobContext context;
     context.threads = threads;
-    const auto photographs = app::load_photos(*plan, context);
+    const auto photographs = app::load_photographs(*plan, context);
     if (!photographs) return photographs.error();
     for (const solver::MethodName& name : *methods) {
       if (!wants_this(name)) continue;

@@ -26,6 +26,7 @@
 #include "simulator/simulate.h"
 #include "solve/bands/bands.h"
 #include "solve/files/normal_comparison.h"
+#include "solve/input/load.h"
 #include "solve/input/session_input.h"
 #include "solve/levels/shifts.h"
 #include "solve/run/solve_session.h"
@@ -276,9 +277,7 @@ Result<pipeline::Photographs> photograph(const simulator::Scene& scene, const st
   if (!simulated) return simulated.error();
   const auto plan = app::plan_session({folder, {}, {}});
   if (!plan) return plan.error();
-  Result<app::LoadedSession> loaded = app::load_session(*plan, context);
-  if (!loaded) return std::move(loaded).error();
-  return std::move(loaded->photographs);
+  return app::load_photographs(*plan, context);
 }
 
 // Error and time of one order of work.

@@ -14,6 +14,7 @@
 #include "calibration/run/rig_evidence.h"
 #include "calibration/run/scale_file.h"
 #include "core/base/files.h"
+#include "solve/input/load.h"
 #include "solve/input/session_input.h"
 
 namespace weft::app {
@@ -198,7 +199,7 @@ void describe(Fields& fields, CalibrateGreyOptions& o) {
 
 Result<CalibrateOutcome> calibrate_grey(const CalibrateGreyOptions& options, const JobContext& context) {
   if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
-  const Result<SessionPlan> plan = plan_session({options.session, options.from, {}});
+  const Result<SolvePlan> plan = plan_session({options.session, options.from, {}});
   if (!plan) return plan.error();
   const Calibration& before = plan->calibration;
   if (!std::holds_alternative<NearLights>(*before.lights) || !plan->raw) {
@@ -211,9 +212,9 @@ Result<CalibrateOutcome> calibrate_grey(const CalibrateGreyOptions& options, con
   if (!scale) return scale.error();
   Result<std::vector<WhitePatch>> patches = patches_in(*scale, file, plan->size);
   if (!patches) return std::move(patches).error();
-  const Result<LoadedSession> loaded = load_session(*plan, context);
+  const Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
   if (!loaded) return loaded.error();
-  const Result<GreyChartFit> found = fit(before, loaded->photographs, *scale, std::move(*patches));
+  const Result<GreyChartFit> found = fit(before, *loaded, *scale, std::move(*patches));
   if (!found) return found.error();
 
   CalibrateOutcome outcome;

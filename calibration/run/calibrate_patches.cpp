@@ -15,6 +15,7 @@
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 #include "solve/conditions/drift.h"
+#include "solve/input/load.h"
 #include "solve/input/session_input.h"
 
 namespace weft::app {
@@ -164,7 +165,7 @@ void describe(Fields& fields, CalibratePatchesOptions& o) {
 Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& options,
                                            const JobContext& context) {
   if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
-  Result<SessionPlan> plan = plan_session({options.session, options.from, {}});
+  Result<SolvePlan> plan = plan_session({options.session, options.from, {}});
   if (!plan) return std::move(plan).error();
   const fs::path file = options.patches.empty()
                             ? absolute_folder(options.session).parent_path() / "patches.toml"
@@ -178,10 +179,10 @@ Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& option
     return bad_patches(options.session.string(), "the calibration's lights are distant");
   }
   plan->calibration.patches.clear();  // those of before say nothing of these
-  const Result<LoadedSession> loaded = load_session(*plan, context);
+  const Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
   if (!loaded) return loaded.error();
 
-  const Result<std::vector<MeasuredPatch>> measured = measure_patches(loaded->photographs, *patches, file);
+  const Result<std::vector<MeasuredPatch>> measured = measure_patches(*loaded, *patches, file);
   if (!measured) return measured.error();
   Calibration change = plan->calibration;
   change.patches = std::move(*patches);

@@ -14,6 +14,7 @@
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 #include "solve/bands/bands.h"
+#include "solve/input/load.h"
 #include "solve/input/session_input.h"
 #include "solver/method.h"
 
@@ -46,17 +47,17 @@ Result<ChartPicture> solve_chart(const fs::path& session, const fs::path& calibr
   SessionOptions options;
   options.folder = session;
   options.calibration = calibration;
-  const Result<SessionPlan> plan = plan_session(options);
+  const Result<SolvePlan> plan = plan_session(options);
   if (!plan) return plan.error();
-  const Result<LoadedSession> loaded = load_session(*plan, context);
+  const Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
   if (!loaded) return loaded.error();
-  HalfAlbedo albedo(loaded->photographs.size);
+  HalfAlbedo albedo(loaded->size);
   const auto keep = [&](const pipeline::MapBand& band) -> Result<void> {
     albedo.add(band);
     return {};
   };
   const Result<double> solved =
-      solve_bands(loaded->photographs, *solver::standard_method(), pipeline::kSolveTile, context, keep);
+      solve_bands(*loaded, *solver::standard_method(), pipeline::kSolveTile, context, keep);
   if (!solved) return solved.error();
   ChartPicture picture;
   picture.is_albedo = true;

@@ -23,6 +23,7 @@
 #include "core/describe/field_check.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
+#include "solve/input/load.h"
 #include "solve/input/session_input.h"
 
 namespace weft::app {
@@ -95,10 +96,10 @@ Result<std::map<std::string, Vec3>> known_planes(const fs::path& input) {
   return planes;
 }
 
-std::optional<double> drift_in(const SessionConditions& conditions) {
+std::optional<double> drift_in(const ConditionFacts& conditions) {
   if (conditions.drift.empty()) return std::nullopt;
   double most = 0;
-  for (const LedDrift& led : conditions.drift) most = std::max(most, std::abs(led.factor - 1));
+  for (const ConditionedLed& led : conditions.drift) most = std::max(most, std::abs(led.factor - 1));
   return most;
 }
 
@@ -106,7 +107,7 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
                                    const TaggedSheet& sheet, const std::map<std::string, Vec3>& planes,
                                    const JobContext& context, Calibration& calibration,
                                    std::string& taken_at) {
-  Result<SessionPlan> plan = plan_session({session, options.from, {}});
+  Result<SolvePlan> plan = plan_session({session, options.from, {}});
   if (!plan) return plan.error();
   if (!calibration.id.empty() && plan->calibration.id != calibration.id) {
     return Error{ErrorKind::kBadData, "the sessions were taken with different calibrations", session.string(),
@@ -114,7 +115,7 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
                  "name the calibration to check with --from, or check each session alone"};
   }
   plan->calibration.patches.clear();  // the sheet may cover them: drift is what the repeat shot says
-  const Result<LoadedSession> loaded = load_session(*plan, context);
+  const Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
   if (!loaded) return loaded.error();
   calibration = plan->calibration;
   if (!std::holds_alternative<NearLights>(*calibration.lights)) {
@@ -122,7 +123,7 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
                  "its lights are distant", "calibrate the rig's lights first"};
   }
   Result<calibration::SheetEvidence> evidence =
-      sheet_evidence(calibration, loaded->photographs, sheet, options.square_px, session.string(), context);
+      sheet_evidence(calibration, *loaded, sheet, options.square_px, session.string(), context);
   if (!evidence) return std::move(evidence).error();
   const auto plane = planes.find(session.filename().string());
   if (plane != planes.end()) evidence->known_normal = plane->second;
@@ -138,8 +139,8 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
   checked.check = check_sheet(*calibration.camera, std::get<NearLights>(*calibration.lights), *evidence);
   checked.columns = evidence->columns;
   checked.rows = evidence->rows;
-  checked.drift = drift_in(loaded->conditions);
-  checked.warnings = loaded->warnings;
+  checked.drift = drift_in(loaded->conditions.facts);
+  checked.warnings = loaded->conditions.warnings;
   if (const std::string& time = plan->lit.front().time;
       seconds_of_iso_time(time) > seconds_of_iso_time(taken_at))
     taken_at = time;
@@ -387,12 +388,12 @@ struct Look {
 };
 
 /// What the sheet reads in one more session.
-Result<void> add_sheet(const LoadedSession& loaded, Size size, const fs::path& session,
+Result<void> add_sheet(const pipeline::Photographs& loaded, Size size, const fs::path& session,
                        const Calibration& calibration, const TaggedSheet& sheet, const JobContext& context,
                        calibration::RigEvidence& evidence) {
   // Every reading is weighed against every other one: about 10 squares by 7, whatever the frame.
   const int side = std::max(std::max(size.width, size.height) / 10 & ~1, 16);
-  const auto seen = sheet_evidence(calibration, loaded.photographs, sheet, side, session.string(), context);
+  const auto seen = sheet_evidence(calibration, loaded, sheet, side, session.string(), context);
   if (!seen) return seen.error();
   for (calibration::LitPlace& place : places_of(*seen, *calibration.camera))
     evidence.places.push_back(std::move(place));
@@ -403,14 +404,14 @@ Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
   const Result<std::vector<fs::path>> sessions = sessions_in(options.session);
   if (!sessions) return sessions.error();
   const fs::path& first = sessions->front();
-  const Result<SessionPlan> plan = plan_session({first, options.from, {}});
+  const Result<SolvePlan> plan = plan_session({first, options.from, {}});
   if (!plan) return plan.error();
-  const Result<LoadedSession> loaded = load_session(*plan, context);
+  const Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
   if (!loaded) return loaded.error();
   const fs::path folder = options.from.empty() ? first / "calibration" : options.from;
-  Look out = {{{}, {}, plan->calibration, folder}, loaded->warnings, plan->lit.front().time};
+  Look out = {{{}, {}, plan->calibration, folder}, loaded->conditions.warnings, plan->lit.front().time};
   const Calibration& calibration = out.rig.calibration;
-  Result<calibration::RigEvidence> evidence = rig_evidence(calibration, loaded->photographs);
+  Result<calibration::RigEvidence> evidence = rig_evidence(calibration, *loaded);
   if (!evidence) return std::move(evidence).error();
   calibration::MovementOptions settings = options.movement;
   double delta = reported_delta(folder);
@@ -423,9 +424,9 @@ Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
     Result<void> added = add_sheet(*loaded, plan->size, first, calibration, *sheet, context, *evidence);
     for (const fs::path& pose : std::span(*sessions).subspan(1)) {
       if (!added) break;
-      const Result<SessionPlan> another = plan_session({pose, folder, {}});
+      const Result<SolvePlan> another = plan_session({pose, folder, {}});
       if (!another) return another.error();
-      const Result<LoadedSession> read = load_session(*another, context);
+      const Result<pipeline::Photographs> read = load_photographs(*another, context);
       if (!read) return read.error();
       added = add_sheet(*read, another->size, pose, calibration, *sheet, context, *evidence);
     }

@@ -99,15 +99,14 @@ Result<void> make_photographs(const ProposedPhotographs& planned, const ImportPr
   capture::remove_abandoned(planned.folder);
   PartialFolder aside(planned.folder);
   std::uint64_t bytes = std::uint64_t{1} << 20;
-  for (const fs::path& file : planned.photos.files)
-    bytes += plan.link == FrameLink::kCopy ? bytes_of(file) : 0;
+  const std::vector<fs::path> sources = planned.photos.files();
+  for (const fs::path& file : sources) bytes += plan.link == FrameLink::kCopy ? bytes_of(file) : 0;
   if (Result<void> ok = begin(aside, bytes); !ok) return ok;
   const PhotographTexts texts = texts_of(planned);
   const std::vector<std::string> names = stored_names(planned.photos);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string& sha256 = texts.facts.photographs[i].sha256;
-    if (Result<void> ok = bring(planned.photos.files[i], aside.path() / names[i], plan.link, sha256); !ok)
-      return ok;
+    if (Result<void> ok = bring(sources[i], aside.path() / names[i], plan.link, sha256); !ok) return ok;
   }
   if (!planned.photos.mask.empty()) {
     Result<void> ok = bring(planned.photos.mask, aside.path() / "mask.png", plan.link, texts.facts.mask);

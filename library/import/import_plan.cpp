@@ -245,7 +245,7 @@ Result<void> check_disks(const ImportProposal& plan) {
   }
   for (const ProposedPhotographs& photographs : plan.photographs) {
     if (photographs.state != ImportState::kNew) continue;
-    std::vector<fs::path> files(photographs.photos.files.begin(), photographs.photos.files.end());
+    std::vector<fs::path> files = photographs.photos.files();
     if (!photographs.photos.mask.empty()) files.emplace_back(photographs.photos.mask);
     for (const fs::path& file : files)
       if (!are_on_one_disk(file, plan.archive)) return refuse(file);
@@ -377,7 +377,7 @@ Json json_of(const ImportProposal& plan) {
     photographs.push_back({{"folder", each.folder.string()},
                            {"state", state_of(each.state)},
                            {"source", each.source.string()},
-                           {"photographs", each.photos.files.size()},
+                           {"photographs", each.photos.lit.size()},
                            {"error", error_of(each.refusal)}});
   }
   for (const LeftOver& file : plan.left_over)

@@ -66,7 +66,7 @@ struct ProposedPhotographs {
   ImportState state = ImportState::kNew;
   std::filesystem::path source;  ///< light file, or folder
   std::filesystem::path folder;  ///< that will be made
-  PhotoPlan photos;
+  SolvePlan photos;
   std::optional<Error> refusal;
 };
 

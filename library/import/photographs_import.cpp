@@ -23,7 +23,7 @@ ProposedPhotographs planned_by(const PhotoOptions& options, const std::string& n
   ProposedPhotographs planned;
   planned.source = options.light_file.empty() ? options.folder : options.light_file;
   planned.folder = archive / (file_name_of(name, "photographs") + ".photos");
-  Result<PhotoPlan> photos = plan_photos(options);
+  Result<SolvePlan> photos = plan_photos(options);
   if (!photos) {
     planned.state = ImportState::kRefused;
     planned.refusal = std::move(photos).error();
@@ -74,13 +74,13 @@ std::vector<ProposedPhotographs> plan_photographs(const SourceFolders& found, co
   return all;
 }
 
-std::vector<std::string> stored_names(const PhotoPlan& photos) {
+std::vector<std::string> stored_names(const SolvePlan& photos) {
   static const std::set<std::string> kOwn = {"filenames.txt", "light_directions.txt", "light_intensities.txt",
                                              "mask.png", "photographs.json"};
   std::vector<std::string> names;
   std::set<std::string> taken = kOwn;
   bool is_each_another = true;
-  for (const fs::path& file : photos.files) {
+  for (const fs::path& file : photos.files()) {
     names.push_back(file.filename().string());
     is_each_another = taken.insert(names.back()).second && is_each_another;
   }
@@ -107,12 +107,13 @@ Json json_of(const ImportedPhotographs& facts) {
 }
 
 PhotographTexts texts_of(const ProposedPhotographs& planned) {
-  const PhotoPlan& photos = planned.photos;
+  const SolvePlan& photos = planned.photos;
   const std::vector<std::string> names = stored_names(photos);
   PhotographTexts texts;
   texts.facts = {planned.source.string(), photos.input.photographs, photos.input.transfer, photos.input.mask};
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto& [direction, irradiance] = photos.lights.lights[i];
+    const Vec3& direction = photos.input.photographs[i].direction;
+    const std::array<double, 3>& irradiance = photos.input.photographs[i].irradiance_rgb;
     texts.names += names[i] + "\n";
     texts.directions += fmt::format("{} {} {}\n", direction.x, direction.y, direction.z);
     texts.intensities += fmt::format("{} {} {}\n", irradiance[0], irradiance[1], irradiance[2]);

@@ -36,6 +36,6 @@ struct PhotographTexts {
 PhotographTexts texts_of(const ProposedPhotographs& planned);
 
 /// The names of the photographs in the folder that is made: their own, where each has another one.
-std::vector<std::string> stored_names(const PhotoPlan& photos);
+std::vector<std::string> stored_names(const SolvePlan& photos);
 
 }  // namespace weft::app

@@ -17,6 +17,7 @@
 #include "core/rig/calibration.h"
 #include "core/solve/solve.h"
 #include "library/run/lean.h"
+#include "solve/input/load.h"
 #include "solve/run/solve_session.h"
 #include "solve/session/current.h"
 #include "solver/method.h"
@@ -79,18 +80,17 @@ std::string words_of_solve(const fs::path& folder) {
                      input.is_object() ? input.value("calibration", Json()).dump() : "");
 }
 
-Result<std::uint64_t> bytes_of_frames(const SessionPlan& plan) {
+Result<std::uint64_t> bytes_of_frames(const SolvePlan& plan) {
   std::uint64_t bytes = 0;
-  for (const Shot& shot : plan.frames()) {
+  for (const fs::path& file : plan.files()) {
     std::error_code failed;
-    const fs::path file = plan.session.path_of(shot);
     bytes += fs::file_size(file, failed);
     if (failed) return cannot_read(file, failed.value());
   }
   return bytes;
 }
 
-void add_levels(SessionPlan& plan, const SurveyOptions& options, Candidate& candidate) {
+void add_levels(SolvePlan& plan, const SurveyOptions& options, Candidate& candidate) {
   const fs::path parent = batch::solve_parent(options.header, candidate.input.folder.string());
   const batch::Product& product = options.header.product;
   for (const solver::MethodName& method : solver::method_names()) {
@@ -126,7 +126,7 @@ Result<void> look_into(const SurveyOptions& options, Calibrations& calibrations,
                  fmt::format("its id is {:.12}, session.json names {:.12}", calibration->id, id),
                  "restore the session's calibration folder, or name another with --calibration"};
   }
-  Result<SessionPlan> plan = plan_unopened(candidate.input, *calibration);
+  Result<SolvePlan> plan = plan_unopened(candidate.input, *calibration);
   if (!plan) return std::move(plan).error();
   const Result<std::uint64_t> bytes = bytes_of_frames(*plan);
   if (!bytes) return bytes.error();

@@ -21,4 +21,20 @@ void join_brackets(std::vector<BracketShot> shots, Mosaics& mosaics) {
   mosaics.noise.shared /= least * least;
 }
 
+Result<void> add_brackets(const Exposures& exposures) {
+  const SolvePlan& plan = exposures.plan;
+  Photographs& photographs = exposures.photographs;
+  std::vector<BracketShot> shots;
+  for (std::size_t i = 0; i < exposures.beside.brackets.size(); ++i) {
+    const Shot& shot = plan.brackets[i];
+    const double exposure_us = plan.lit.front().exposure_us;
+    shots.push_back({photographs.light_of(shot.led),
+                     plan.calibration.response->exposure_ratio(shot.exposure_us, exposure_us).value(),
+                     std::move(exposures.beside.brackets[i])});
+  }
+  photographs.conditions.facts.brackets = static_cast<int>(shots.size());
+  if (Mosaics* mosaics = photographs.mosaics()) join_brackets(std::move(shots), *mosaics);
+  return {};
+}
+
 }  // namespace weft::pipeline

@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/conditions/drift.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <span>
+#include <string>
 #include <utility>
 
+#include "core/base/iso_time.h"
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 
 namespace weft::pipeline {
 namespace {
+
+// As solve.json has them.
+constexpr const char *kFromPatches = "patches", *kFromRepeats = "repeat";
 
 // Light of a repeat over that of the photograph of the same light.
 std::optional<double> ratio_of(const Repeat& repeat, const Photographs& photographs, const Frames& again,
@@ -103,6 +113,97 @@ void ask_patches(const Photographs& photographs, const std::vector<WhitePatch>& 
   drift.measured = std::move(factors);
 }
 
+const Shot& lit_shot_of(const SolvePlan& plan, int led) {
+  return *std::find_if(plan.lit.begin(), plan.lit.end(), [&](const Shot& s) { return s.led == led; });
+}
+
+// When each shot was taken, by its time where all have one, else by its place in the order of capture.
+class ShotClock {
+ public:
+  explicit ShotClock(const SolvePlan& plan) {
+    for (const auto* shots : {&plan.lit, &plan.repeats}) {
+      for (const Shot& shot : *shots)
+        all_have_time_ = all_have_time_ && seconds_of_iso_time(shot.time).has_value();
+    }
+  }
+  double operator()(const Shot& shot) const {
+    return all_have_time_ ? *seconds_of_iso_time(shot.time) : shot.index;
+  }
+
+ private:
+  bool all_have_time_ = true;
+};
+
+// What a session says of the brightness of its LEDs. Repeats of LEDs that were left out say nothing.
+DriftEvidence drift_evidence(const SolvePlan& plan, const Photographs& photographs, Frames again) {
+  const ShotClock time_of(plan);
+  DriftEvidence evidence;
+  evidence.patches = plan.calibration.patches;
+  evidence.again = std::move(again);
+  for (std::size_t i = 0; i < plan.repeats.size(); ++i) {
+    const Shot& shot = plan.repeats[i];
+    const std::size_t light = photographs.light_of(shot.led);
+    if (light == photographs.count()) continue;
+    evidence.repeats.push_back({light, i, time_of(lit_shot_of(plan, shot.led)), time_of(shot)});
+  }
+  for (const int led : photographs.leds) evidence.times.push_back(time_of(lit_shot_of(plan, led)));
+  evidence.first_time = std::numeric_limits<double>::infinity();
+  for (const Shot& shot : plan.lit) evidence.first_time = std::min(evidence.first_time, time_of(shot));
+  return evidence;
+}
+
+// What one patch says that others do not.
+std::string departure_words(std::span<const PatchDeparture> departures, const std::vector<int>& leds) {
+  std::vector<int> of_leds;
+  double worst = 1;
+  for (const PatchDeparture& each : departures) {
+    of_leds.push_back(leds[each.light]);
+    if (std::abs(each.ratio - 1) > std::abs(worst - 1)) worst = each.ratio;
+  }
+  return fmt::format(
+      "white patch {} gives {:.3g} times the light that most patches give{}, and their median was used; see "
+      "whether cloth or its shadow lies on it, or whether it is dirty",
+      departures.front().patch + 1, worst,
+      of_leds.size() == leds.size()
+          ? ""
+          : fmt::format(" under LED{} {}", of_leds.size() == 1 ? "" : "s", fmt::join(of_leds, ", ")));
+}
+
+// What there is to be warned of, in sentences.
+std::vector<std::string> drift_words(const Drift& drift, const DriftEvidence& evidence, const SolvePlan& plan,
+                                     const std::vector<int>& leds) {
+  std::vector<std::string> words;
+  if (drift.unread_light) {
+    words.push_back(
+        fmt::format("no white patch can be read in the light of LED {}, as they lie outside the frame, are "
+                    "saturated or unlit; patches were not used",
+                    leds[*drift.unread_light]));
+  }
+  for (auto first = drift.departures.begin(); first != drift.departures.end();) {
+    const auto last = std::find_if(first, drift.departures.end(),
+                                   [&](const auto& each) { return each.patch != first->patch; });
+    words.push_back(departure_words({first, last}, leds));
+    first = last;
+  }
+  for (std::size_t i = 0; i < drift.ratios.size(); ++i) {
+    const std::optional<double>& ratio = drift.ratios[i];
+    if (ratio && is_drift(*ratio)) continue;
+    const Shot& again = plan.repeats[evidence.repeats[i].frame];
+    words.push_back(
+        fmt::format("LED {} gave {} of its light when {} repeated it: too far off to be drift, so it was not "
+                    "used; see whether the LED was covered or failed",
+                    again.led, ratio ? fmt::format("{:.3g} times", *ratio) : "none", again.file));
+  }
+  for (std::size_t k = 0; k < drift.measured.size(); ++k) {
+    if (is_drift(drift.measured[k])) continue;
+    words.push_back(
+        fmt::format("LED {} gave {:.3g} times the light of its calibration: too far off to be drift, so it "
+                    "was not corrected; see whether the LED was covered or replaced",
+                    leds[k], drift.measured[k]));
+  }
+  return words;
+}
+
 }  // namespace
 
 bool is_drift(double factor) {
@@ -147,6 +248,24 @@ Result<void> follow(const Drift& drift, Photographs& photographs) {
   if (!field) return std::move(field).error();
   photographs.field = std::move(*field);
   return {};
+}
+
+Result<void> follow_drift(const Exposures& exposures) {
+  Photographs& photographs = exposures.photographs;
+  const DriftEvidence evidence =
+      drift_evidence(exposures.plan, photographs, std::move(exposures.beside.repeats));
+  const Drift drift = find_drift(photographs, evidence, exposures.context.threads);
+  Conditions& conditions = photographs.conditions;
+  for (std::string& said : drift_words(drift, evidence, exposures.plan, photographs.leds))
+    conditions.warnings.push_back(std::move(said));
+  const char* from = drift.source == Drift::Source::kPatches ? kFromPatches : kFromRepeats;
+  for (std::size_t k = 0; k < drift.measured.size(); ++k)
+    conditions.facts.drift.push_back({photographs.leds[k], drift.factor(k), from});
+  return follow(drift, photographs);
+}
+
+bool was_told_by_patches(const ConditionFacts& facts) {
+  return !facts.drift.empty() && facts.drift.front().from == kFromPatches;
 }
 
 }  // namespace weft::pipeline

@@ -7,6 +7,7 @@
 
 #include "core/base/result.h"
 #include "core/rig/lights.h"
+#include "solve/conditions/conditions.h"
 #include "solve/photographs/photographs.h"
 #include "solver/conditions/light_change.h"
 
@@ -71,5 +72,12 @@ Drift find_drift(const Photographs& photographs, const DriftEvidence& evidence, 
 
 /// Gives the field's lights their factors. Errors: as LightField::make.
 Result<void> follow(const Drift& drift, Photographs& photographs);
+
+/// Measures how bright each LED was in its shot, and gives the field's lights that brightness. Errors: as
+/// LightField::make.
+Result<void> follow_drift(const Exposures& exposures);
+
+/// Whether white patches told what follow_drift() said.
+bool was_told_by_patches(const ConditionFacts& facts);
 
 }  // namespace weft::pipeline

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/statistics.h"
+#include "solve/conditions/drift.h"
 #include "solve/correction/left_out.h"
 #include "solve/photographs/tile_reader.h"
 #include "solver/in_double/pixel.h"
@@ -209,6 +210,25 @@ Result<std::optional<LedGains>> find_led_gains(const Photographs& photographs, c
   if (!with) return with.error();
   found.left_out = solver::compare(*without, *with).frame;
   return std::optional(std::move(found));
+}
+
+Result<void> follow_cloth(const Exposures& exposures) {
+  Photographs& photographs = exposures.photographs;
+  ConditionFacts& facts = photographs.conditions.facts;
+  if (was_told_by_patches(facts)) return {};
+  const Result<std::optional<LedGains>> found = find_led_gains(photographs, {}, exposures.context);
+  if (!found) return found.error();
+  if (!*found || !(*found)->is_kept()) return {};
+  const LedGains& told = **found;
+  Result<LightField> field =
+      LightField::make(brightened(photographs.field->lights(), told.gain), photographs.camera,
+                       photographs.size, photographs.field->cloth_height_mm());
+  if (!field) return std::move(field).error();
+  photographs.field = std::move(*field);
+  facts.cloth_gains = {{}, told.misfit_before, told.misfit_after, told.left_out->mean, told.left_out->sigma};
+  for (std::size_t k = 0; k < photographs.leds.size(); ++k)
+    facts.cloth_gains->leds.push_back({photographs.leds[k], told.gain[k], told.sigma[k]});
+  return {};
 }
 
 }  // namespace weft::pipeline

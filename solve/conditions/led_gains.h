@@ -6,6 +6,7 @@
 
 #include "core/base/job.h"
 #include "core/base/result.h"
+#include "solve/conditions/conditions.h"
 #include "solve/photographs/photographs.h"
 #include "solver/left_out/left_out.h"
 
@@ -44,5 +45,9 @@ struct LedGainsOptions {
 /// kInterrupted.
 Result<std::optional<LedGains>> find_led_gains(const Photographs& photographs, const LedGainsOptions& options,
                                                const JobContext& context);
+
+/// Asks the cloth where no white patch has told, and gives the field's lights the brightness where left-out
+/// light is predicted better for it.
+Result<void> follow_cloth(const Exposures& exposures);
 
 }  // namespace weft::pipeline

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 namespace weft::pipeline {
 
@@ -29,6 +30,23 @@ void replace_bad_photosites(std::vector<Photosite> bad, Mosaics& mosaics,
   if (mosaics.dark) frames.push_back(&*mosaics.dark);
   replace_photosites(frames, bad, threads);
   mosaics.replaced = std::move(bad);
+}
+
+Result<void> mend_photosites(const Exposures& exposures) {
+  Photographs& photographs = exposures.photographs;
+  Mosaics* mosaics = photographs.mosaics();
+  if (mosaics == nullptr) return {};
+  FramesBeside& beside = exposures.beside;
+  std::vector<RawFrame*> others;
+  for (RawFrame& frame : std::get<Mosaics>(beside.repeats).frames) others.push_back(&frame);
+  for (RawFrame& frame : beside.brackets) others.push_back(&frame);
+  if (photographs.parallel) {
+    for (RawFrame& frame : std::get<Mosaics>(*photographs.parallel).frames) others.push_back(&frame);
+  }
+  const int threads = exposures.context.threads;
+  replace_bad_photosites(find_bad_photosites(*mosaics, beside.known_bad, threads), *mosaics, others, threads);
+  photographs.conditions.facts.hot_photosites = static_cast<int>(mosaics->replaced.size());
+  return {};
 }
 
 }  // namespace weft::pipeline

@@ -3,8 +3,10 @@
 
 #include <vector>
 
+#include "core/base/result.h"
 #include "core/image/raw_frame.h"
 #include "core/rig/photosites.h"
+#include "solve/conditions/conditions.h"
 #include "solve/photographs/photographs.h"
 
 namespace weft::pipeline {
@@ -18,5 +20,8 @@ std::vector<Photosite> find_bad_photosites(const Mosaics& mosaics, const std::ve
 /// shot.
 void replace_bad_photosites(std::vector<Photosite> bad, Mosaics& mosaics,
                             const std::vector<RawFrame*>& others, int threads);
+
+/// Replaces the photosites that are hot, dead, or known to be bad, in every frame.
+Result<void> mend_photosites(const Exposures& exposures);
 
 }  // namespace weft::pipeline

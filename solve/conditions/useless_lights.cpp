@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/conditions/useless_lights.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
 #include <variant>
+
+#include "core/base/percent.h"
 
 namespace weft::pipeline {
 namespace {
 
-constexpr double kMostFull = 0.99;
+constexpr double kMostOfFrame = 0.99;
 constexpr double kLeastLight = 0.01;
 constexpr double kOutOfTheDark_sigmas = 5;
 constexpr int kStatisticsRows = 16;  // from one filter cell that is looked at to the next
@@ -56,6 +62,27 @@ FrameStatistics statistics_of(const Photographs& photographs, std::size_t k) {
           std::sqrt(share_of(floor, finite))};
 }
 
+// Of all lights that are useless for one reason; empty where none is.
+std::string useless_words(const std::vector<UselessLight>& useless, UselessLight::Why why,
+                          const std::vector<int>& leds) {
+  std::vector<int> of_leds;
+  double least = 1;
+  for (const UselessLight& light : useless) {
+    if (light.why != why) continue;
+    of_leds.push_back(leds[light.light]);
+    least = std::min(least, light.full_share);
+  }
+  if (of_leds.empty()) return "";
+  const bool is_one = of_leds.size() == 1;
+  const std::string names = fmt::format("LED{} {}", is_one ? "" : "s", fmt::join(of_leds, ", "));
+  if (why == UselessLight::Why::kNotLit) {
+    return fmt::format("{} did not light the cloth: {} like the dark shot", names,
+                       is_one ? "its frame looks" : "their frames look");
+  }
+  return fmt::format("{} saturated {}{} percent of the frame", names, is_one ? "" : "at least ",
+                     percent_words(least));
+}
+
 }  // namespace
 
 std::vector<UselessLight> find_useless_lights(const Photographs& photographs) {
@@ -69,13 +96,44 @@ std::vector<UselessLight> find_useless_lights(const Photographs& photographs) {
   std::vector<UselessLight> useless;
   for (std::size_t k = 0; k < statistics.size(); ++k) {
     const FrameStatistics& s = statistics[k];
-    if (s.full_share > kMostFull) {
+    if (s.full_share > kMostOfFrame) {
       useless.push_back({k, UselessLight::Why::kSaturated, s.full_share});
     } else if (s.predicted > 0 && best > 0 && s.mean <= kLeastLight * best * s.predicted) {
       useless.push_back({k, UselessLight::Why::kNotLit, s.full_share});
     }
   }
   return useless;
+}
+
+Result<void> drop_useless_lights(const Exposures& exposures) {
+  if (!exposures.plan.is_of_rig) return {};
+  Photographs& photographs = exposures.photographs;
+  Conditions& conditions = photographs.conditions;
+  const std::vector<UselessLight> useless = find_useless_lights(photographs);
+  std::vector<std::size_t> lights;
+  for (const UselessLight& light : useless) {
+    const bool is_saturated = light.why == UselessLight::Why::kSaturated;
+    lights.push_back(light.light);
+    conditions.facts.left_out.push_back(
+        {photographs.leds[light.light], is_saturated ? "saturated" : "not lit"});
+  }
+  std::vector<std::string> warnings;
+  std::string reasons;
+  for (const auto why : {UselessLight::Why::kSaturated, UselessLight::Why::kNotLit}) {
+    const std::string words = useless_words(useless, why, photographs.leds);
+    if (words.empty()) continue;
+    reasons += (reasons.empty() ? "" : "; ") + words;
+    const auto count = std::ranges::count(useless, why, &UselessLight::why);
+    warnings.push_back(words + (count == 1 ? "; it was left out" : "; they were left out"));
+  }
+  const std::size_t rest = photographs.count() - useless.size();
+  if (!useless.empty() && rest < 3) {
+    return Error{ErrorKind::kBadData, "too few lights", exposures.plan.where,
+                 fmt::format("{}, which leaves {}; a normal and an albedo are three unknowns", reasons, rest),
+                 "see to these LEDs and to the exposure, and scan the cloth again"};
+  }
+  conditions.warnings.insert(conditions.warnings.begin(), warnings.begin(), warnings.end());
+  return leave_out(lights, photographs);
 }
 
 }  // namespace weft::pipeline

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/base/result.h"
+#include "solve/conditions/conditions.h"
 #include "solve/photographs/photographs.h"
 
 namespace weft::pipeline {
@@ -22,5 +24,8 @@ struct UselessLight {
 /// Looks at every 16th pair of rows of each photograph. Where no photograph stands five standard errors out
 /// of the dark, none is called unlit. In the order of the lights.
 std::vector<UselessLight> find_useless_lights(const Photographs& photographs);
+
+/// Leaves out those of a rig's LEDs. kBadData where fewer than three remain.
+Result<void> drop_useless_lights(const Exposures& exposures);
 
 }  // namespace weft::pipeline

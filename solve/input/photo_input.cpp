@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
+#include <utility>
 
 #include "core/base/files.h"
 #include "core/base/number.h"
 #include "solve/input/photo_mask.h"
-#include "solve/photographs/plane_weights.h"
 
 namespace weft::app {
 namespace {
@@ -69,16 +68,36 @@ Result<Vec3> direction_of(const std::array<double, 3>& t, const fs::path& file) 
   return normalized(v);
 }
 
-Result<PhotoPlan> read_folder(const fs::path& folder) {
-  PhotoPlan plan;
+// Photographs in `folder` without any yet.
+SolvePlan plan_in(const fs::path& folder) {
+  SolvePlan plan;
+  plan.is_of_rig = plan.raw = false;
+  plan.session.folder = folder;
+  plan.calibration.lights = DistantLights();
+  return plan;
+}
+
+// One more photograph and its light.
+void add_photo(const std::string& file, const DistantLight& light, SolvePlan& plan) {
+  std::vector<DistantLight>& lights = std::get<DistantLights>(*plan.calibration.lights).lights;
+  lights.push_back(light);
+  Shot shot;
+  shot.led = static_cast<int>(lights.size());
+  shot.file = file;
+  plan.session.shots.push_back(std::move(shot));
+}
+
+Result<SolvePlan> read_folder(const fs::path& folder) {
+  SolvePlan plan = plan_in(folder);
   const fs::path directions_file = folder / "light_directions.txt",
                  intensities_file = folder / "light_intensities.txt";
   const Result<std::string> names = read_text(folder / "filenames.txt");
   if (!names) return names.error();
+  std::vector<std::string> files;
   std::istringstream lines(*names);
   for (std::string name; std::getline(lines, name);) {
     name.erase(name.find_last_not_of(" \t\r") + 1);
-    if (!name.empty()) plan.files.push_back(folder / name);
+    if (!name.empty()) files.push_back(name);
   }
   const auto directions = read_triples(directions_file);
   if (!directions) return directions.error();
@@ -88,12 +107,12 @@ Result<PhotoPlan> read_folder(const fs::path& folder) {
     if (!read) return std::move(read).error();
     intensities = std::move(*read);
   }
-  if (directions->size() != plan.files.size() || intensities.size() != plan.files.size()) {
+  if (directions->size() != files.size() || intensities.size() != files.size()) {
     return bad_lights(
         folder, fmt::format("filenames.txt has {} lines, light_directions.txt {}, light_intensities.txt {}",
-                            plan.files.size(), directions->size(), intensities.size()));
+                            files.size(), directions->size(), intensities.size()));
   }
-  for (std::size_t k = 0; k < plan.files.size(); ++k) {
+  for (std::size_t k = 0; k < files.size(); ++k) {
     const Result<Vec3> direction = direction_of((*directions)[k], directions_file);
     if (!direction) return direction.error();
     for (const double v : intensities[k]) {
@@ -101,7 +120,7 @@ Result<PhotoPlan> read_folder(const fs::path& folder) {
         return bad_lights(intensities_file, fmt::format("light {} has an intensity of {}", k + 1, v));
       }
     }
-    plan.lights.lights.push_back({*direction, intensities[k]});
+    add_photo(files[k], {*direction, intensities[k]}, plan);
   }
   Result<fs::path> mask = find_mask(folder);
   if (!mask) return std::move(mask).error();
@@ -109,7 +128,7 @@ Result<PhotoPlan> read_folder(const fs::path& folder) {
   return plan;
 }
 
-Result<PhotoPlan> read_light_file(const fs::path& file) {
+Result<SolvePlan> read_light_file(const fs::path& file) {
   const Result<std::string> text = read_text(file);
   if (!text) return text.error();
   std::istringstream lines(*text);
@@ -121,7 +140,7 @@ Result<PhotoPlan> read_light_file(const fs::path& file) {
     return bad_lights(file, fmt::format("the first line is not the number of photographs: \"{}\"",
                                         line.substr(0, kLongestQuote)));
   }
-  PhotoPlan plan;
+  SolvePlan plan = plan_in(file.parent_path());
   for (int number = 2; std::getline(lines, line); ++number) {
     const std::vector<std::string_view> words = words_of_line(line);
     if (words.empty()) continue;
@@ -133,47 +152,44 @@ Result<PhotoPlan> read_light_file(const fs::path& file) {
     // The name may hold spaces.
     const std::string_view last = words[words.size() - 4];
     const std::string name(words.front().data(), last.data() + last.size());
-    plan.files.push_back(file.parent_path() / name);
-    if (words.size() > 4 && as_number(last) && !is_there(plan.files.back()))
+    add_photo(name, {*direction, {1, 1, 1}}, plan);
+    if (words.size() > 4 && as_number(last) && !is_there(plan.session.path_of(plan.session.shots.back())))
       return bad_lights(file, fmt::format("line {} has more than three numbers", number));
-    plan.lights.lights.push_back({*direction, {1, 1, 1}});
   }
-  if (plan.files.size() != *count) {
-    return bad_lights(file,
-                      fmt::format("it announces {} photographs and lists {}", *count, plan.files.size()));
-  }
+  const std::size_t listed = plan.session.shots.size();
+  if (listed != *count)
+    return bad_lights(file, fmt::format("it announces {} photographs and lists {}", *count, listed));
   return plan;
 }
 
-Result<void> keep_lights(PhotoPlan& plan, const std::vector<int>& numbers) {
-  if (numbers.empty()) return {};
-  Result<Lights> lights = select_lights(Lights(plan.lights), numbers);
-  if (!lights) return std::move(lights).error();
-  std::vector<fs::path> files;
-  for (const int number : numbers) files.push_back(plan.files[static_cast<std::size_t>(number) - 1]);
-  plan.lights = std::get<DistantLights>(std::move(*lights));
-  plan.files = std::move(files);
+// The shots of these numbers, or all of them.
+Result<void> choose_photos(const std::vector<int>& numbers, SolvePlan& plan) {
+  std::vector<Shot>& all = plan.session.shots;
+  if (numbers.empty()) {
+    plan.lit = all;
+    return {};
+  }
+  if (Result<Lights> lights = select_lights(*plan.calibration.lights, numbers); !lights)
+    return std::move(lights).error();
+  for (const int number : numbers) plan.lit.push_back(all[static_cast<std::size_t>(number) - 1]);
   return {};
 }
 
-}  // namespace
+// What a person calls them by: the name of their folder or light file.
+fs::path name_of_source(const PhotoOptions& options) {
+  const fs::path source =
+      fs::absolute(options.light_file.empty() ? options.folder : options.light_file).lexically_normal();
+  return source.has_filename() ? source.stem() : source.parent_path().filename();
+}
 
-Result<PhotoPlan> plan_photos(const PhotoOptions& options) {
-  Result<PhotoPlan> read =
-      options.light_file.empty() ? read_folder(options.folder) : read_light_file(options.light_file);
-  if (!read) return read;
-  PhotoPlan plan = std::move(*read);
-  plan.clipped = options.clipped;
-  if (Result<void> kept = keep_lights(plan, options.lights); !kept) return std::move(kept).error();
-  if (plan.files.size() < 3) {
-    return Error{ErrorKind::kBadData, "too few lights", (options.folder / options.light_file).string(),
-                 fmt::format("{} photographs; a normal and an albedo are three unknowns", plan.files.size()),
-                 "give at least three photographs under different lights"};
-  }
-  for (std::size_t k = 0; k < plan.files.size(); ++k) {
-    const Result<ImageFileInfo> info = read_linear_image_info(plan.files[k]);
+// Size and transfer of all, from their headers, and what the id is made of.
+Result<void> look_at_photos(Transfer wanted, SolvePlan& plan) {
+  const std::vector<DistantLight>& lights = std::get<DistantLights>(*plan.calibration.lights).lights;
+  for (std::size_t k = 0; k < plan.lit.size(); ++k) {
+    const fs::path file = plan.session.path_of(plan.lit[k]);
+    const Result<ImageFileInfo> info = read_linear_image_info(file);
     if (!info) return info.error();
-    const Transfer transfer = options.transfer == Transfer::kAuto ? transfer_of(*info) : options.transfer;
+    const Transfer transfer = wanted == Transfer::kAuto ? transfer_of(*info) : wanted;
     if (k == 0) {
       plan.size = info->size;
       plan.transfer = transfer;
@@ -181,70 +197,51 @@ Result<PhotoPlan> plan_photos(const PhotoOptions& options) {
     // Each by its own kind, where they differ.
     if (transfer != plan.transfer) plan.transfer = Transfer::kAuto;
     if (info->size != plan.size) {
-      return Error{ErrorKind::kBadData, "photographs differ in size", plan.files[k].string(),
+      return Error{ErrorKind::kBadData, "photographs differ in size", file.string(),
                    fmt::format("{} x {} pixels, the first has {} x {}", info->size.width, info->size.height,
                                plan.size.width, plan.size.height),
                    "use photographs of one camera that was not moved"};
     }
-    const Result<std::string> digest = sha256_of_file(plan.files[k]);
+    const Result<std::string> digest = sha256_of_file(file);
     if (!digest) return digest.error();
-    const DistantLight& light = plan.lights.lights[k];
+    const DistantLight& light = lights[static_cast<std::size_t>(plan.lit[k].led) - 1];
     plan.input.photographs.push_back(
-        {plan.files[k].filename().string(), *digest, light.direction, light.irradiance_rgb});
+        {file.filename().string(), *digest, light.direction, light.irradiance_rgb});
   }
   plan.input.transfer = name_of(plan.transfer);
-  if (!plan.mask.empty()) {
-    if (const auto mask = read_mask(plan.mask, plan.size); !mask) return mask.error();
-    const Result<std::string> digest = sha256_of_file(plan.mask);
-    if (!digest) return digest.error();
-    plan.input.mask = *digest;
-  }
-  return plan;
+  return {};
 }
 
-Result<pipeline::Photographs> load_photos(const PhotoPlan& plan, const JobContext& context) {
-  const std::uint64_t needed = static_cast<std::uint64_t>(plan.size.pixels()) * 12 * (plan.files.size() + 4);
-  const std::uint64_t free = available_memory_bytes();
-  if (free != 0 && needed > free) {
-    return Error{ErrorKind::kTryAgain, "not enough memory", plan.files.front().string(),
-                 fmt::format("{} MB are needed, {} MB are free", needed >> 20, free >> 20),
-                 "use fewer or smaller photographs, or a larger machine"};
-  }
-  pipeline::Photographs photographs;
-  photographs.size = plan.size;
-  Result<LightField> field = LightField::make(Lights(plan.lights), std::nullopt, plan.size, 0);
-  if (!field) return std::move(field).error();
-  photographs.field = std::move(*field);
+Result<void> look_at_mask(SolvePlan& plan) {
+  if (plan.mask.empty()) return {};
+  if (const auto mask = read_mask(plan.mask, plan.size); !mask) return mask.error();
+  const Result<std::string> digest = sha256_of_file(plan.mask);
+  if (!digest) return digest.error();
+  plan.input.mask = *digest;
+  return {};
+}
 
-  std::optional<Image<std::uint8_t>> mask;
-  if (!plan.mask.empty()) {
-    Result<Image<std::uint8_t>> read = read_mask(plan.mask, plan.size);
-    if (!read) return std::move(read).error();
-    mask = std::move(*read);
+}  // namespace
+
+Result<SolvePlan> plan_photos(const PhotoOptions& options) {
+  Result<SolvePlan> plan =
+      options.light_file.empty() ? read_folder(options.folder) : read_light_file(options.light_file);
+  if (!plan) return plan;
+  plan->clipped = options.clipped;
+  if (Result<void> chosen = choose_photos(options.lights, *plan); !chosen) return std::move(chosen).error();
+  if (plan->lit.size() < 3) {
+    return Error{ErrorKind::kBadData, "too few lights", (options.folder / options.light_file).string(),
+                 fmt::format("{} photographs; a normal and an albedo are three unknowns", plan->lit.size()),
+                 "give at least three photographs under different lights"};
   }
-  std::vector<Image<float>> rgb(plan.files.size());
-  const auto read_photo = [&](std::size_t k) -> Result<void> {
-    Result<Image<float>> image = read_linear_image(plan.files[k], plan.transfer, plan.clipped);
-    if (!image) return std::move(image).error();
-    if (mask) {
-      for (int y = 0; y < plan.size.height; ++y) {
-        for (int x = 0; x < plan.size.width; ++x) {
-          if ((*mask)(x, y) != 0) continue;
-          for (int c = 0; c < 3; ++c) (*image)(x, y, c) = std::numeric_limits<float>::quiet_NaN();
-        }
-      }
-    }
-    rgb[k] = std::move(*image);
-    return {};
-  };
-  if (Result<void> read = for_each_frame(plan.files.size(), context, read_photo); !read) {
-    return std::move(read).error();
-  }
-  photographs.frames = pipeline::Developed{std::move(rgb)};
-  // Figures were published of luminance.
-  if (plan.clipped == Clipped::kMark)
-    photographs.plane_weights = pipeline::measure_plane_weights(photographs);
-  return photographs;
+  if (Result<void> looked = look_at_photos(options.transfer, *plan); !looked)
+    return std::move(looked).error();
+  if (Result<void> looked = look_at_mask(*plan); !looked) return std::move(looked).error();
+  const std::string name = name_of_source(options).string();
+  plan->where = plan->session.fabric = name;
+  std::error_code ignored;
+  plan->solves = fs::current_path(ignored) / (name + "-solve");
+  return plan;
 }
 
 }  // namespace weft::app

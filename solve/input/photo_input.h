@@ -2,17 +2,15 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
-#include "core/base/job.h"
 #include "core/base/result.h"
 #include "core/image_io/linear_image.h"
-#include "core/rig/lights.h"
-#include "core/solve/solve_parts.h"
-#include "solve/photographs/photographs.h"
+#include "solve/photographs/solve_plan.h"
 
 namespace weft::app {
+
+using pipeline::SolvePlan;
 
 /// Where photographs under distant lights are: one of `folder` and `light_file` is named.
 struct PhotoOptions {
@@ -27,19 +25,8 @@ struct PhotoOptions {
   std::vector<int> lights;  ///< numbers from 1; empty: all
 };
 
-/// Photographs under distant lights that have been looked at but not read.
-struct PhotoPlan {
-  std::vector<std::filesystem::path> files;
-  DistantLights lights;
-  std::filesystem::path mask;  ///< empty: every pixel counts
-  Size size;
-  Transfer transfer = Transfer::kLinear;  ///< kAuto: files differ, and each is taken by its own kind
-  Clipped clipped = Clipped::kMark;
-  SolveInput input;  ///< for solve.json, and what the id of the solve is made of
-};
-
-Result<PhotoPlan> plan_photos(const PhotoOptions& options);
-/// Reads the photographs; readings outside the mask are missing.
-Result<pipeline::Photographs> load_photos(const PhotoPlan& plan, const JobContext& context);
+/// Lit shots without a rig, each numbered by its place in the list (SolvePlan). kBadData for a layout, a
+/// light or a picture that cannot be used, and for fewer than three.
+Result<SolvePlan> plan_photos(const PhotoOptions& options);
 
 }  // namespace weft::app

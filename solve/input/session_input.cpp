@@ -4,16 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
+#include <memory>
+#include <utility>
 
 #include "capture/frames/session_frames.h"
 #include "core/base/files.h"
-#include "core/base/parallel.h"
+#include "core/describe/field_json.h"
 #include "core/image_io/linear_image.h"
 #include "core/rig/suits.h"
-#include "solve/input/session_conditions.h"
-#include "solve/levels/reference.h"
-#include "solve/photographs/plane_weights.h"
 #include "solve/session/left_out_shots.h"
 
 namespace weft::app {
@@ -22,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Takes away what a person left out.
-void leave_out_by_person(SessionPlan& plan) {
+void leave_out_by_person(SolvePlan& plan) {
   const std::vector<int> indices = library::left_out(plan.session);
   std::erase_if(plan.session.shots, [&](const Shot& shot) {
     if (std::ranges::find(indices, shot.index) == indices.end()) return false;
@@ -32,7 +30,7 @@ void leave_out_by_person(SessionPlan& plan) {
 }
 
 // Of a rig that was known to have moved when the cloth was scanned.
-void tell_of_moved_rig(SessionPlan& plan) {
+void tell_of_moved_rig(SolvePlan& plan) {
   const Json accepted = plan.session.document.value("accepted_moved", Json());
   if (!accepted.is_object()) return;
   const Json degrees = accepted.value("degrees", Json()), why = accepted.value("why", Json());
@@ -69,7 +67,7 @@ Result<std::vector<Shot>> choose_lit(const Session& session, const std::vector<i
 }
 
 // The other half of a pair: the lit shots once more through parallel films.
-void choose_parallel(SessionPlan& plan) {
+void choose_parallel(SolvePlan& plan) {
   if (plan.lit.front().polariser != Polariser::kCrossed) return;
   const std::vector<const Shot*> all = plan.session.lit(Polariser::kParallel);
   if (all.empty()) return;
@@ -87,8 +85,9 @@ void choose_parallel(SessionPlan& plan) {
 }
 
 // The repeats and brackets of the lit shots, with a warning for each that says nothing.
-void choose_more(SessionPlan& plan) {
+void choose_more(SolvePlan& plan) {
   const Shot& lit = plan.lit.front();
+  const std::optional<Response>& response = plan.calibration.response;
   for (const Shot& shot : plan.session.shots) {
     const bool is_repeat = shot.role == ShotRole::kRepeat;
     const bool is_bracket = shot.role == ShotRole::kBracket;
@@ -107,7 +106,7 @@ void choose_more(SessionPlan& plan) {
       plan.repeats.push_back(shot);
     } else if (!plan.raw) {
       leave_out("brackets are merged by the noise of raw frames, and these are developed");
-    } else if (!plan.calibration.response->exposure_ratio(shot.exposure_us, lit.exposure_us)) {
+    } else if (!response || !response->exposure_ratio(shot.exposure_us, lit.exposure_us)) {
       leave_out(
           fmt::format("response.json has no measured ratio of {} us to {} us; measure it with weft "
                       "calibrate response",
@@ -118,121 +117,19 @@ void choose_more(SessionPlan& plan) {
   }
 }
 
-// Frames of one body have one set of levels.
-Result<void> check_levels(const RawFrame& frame, const RawFrame& first, const fs::path& file) {
-  if (frame.black == first.black && frame.white == first.white) return {};
-  return Error{
-      ErrorKind::kBadData, "frame does not belong to its session", file.string(),
-      fmt::format("its black levels are {} {} {} {} and its white level is {}, the first frame's are {} {} "
-                  "{} {} and {}",
-                  frame.black[0][0], frame.black[0][1], frame.black[1][0], frame.black[1][1], frame.white,
-                  first.black[0][0], first.black[0][1], first.black[1][0], first.black[1][1], first.white),
-      "scan the cloth again with fixed camera settings"};
-}
-
-// Moves the first `count` of `frames` away.
-template <typename Frame>
-std::vector<Frame> take(std::vector<Frame>& frames, std::size_t count) {
-  const auto end = frames.begin() + static_cast<std::ptrdiff_t>(count);
-  std::vector<Frame> taken(std::make_move_iterator(frames.begin()), std::make_move_iterator(end));
-  frames.erase(frames.begin(), end);
-  return taken;
-}
-
-template <typename Frame>
-Result<std::vector<Frame>> read_frames(const std::vector<Shot>& shots, const JobContext& context,
-                                       const std::function<Result<Frame>(const Shot&)>& read) {
-  std::vector<Frame> frames(shots.size());
-  const auto read_one = [&](std::size_t i) -> Result<void> {
-    Result<Frame> frame = read(shots[i]);
-    if (!frame) return std::move(frame).error();
-    frames[i] = std::move(*frame);
-    return {};
-  };
-  if (Result<void> ok = for_each_frame(shots.size(), context, read_one); !ok) return std::move(ok).error();
-  return frames;
-}
-
-// `shots` are those of plan.frames().
-Result<pipeline::Frames> read_mosaics(const SessionPlan& plan, const std::vector<Shot>& shots,
-                                      const JobContext& context, MoreFrames& more) {
-  Result<std::vector<RawFrame>> frames = read_frames<RawFrame>(
-      shots, context, [&](const Shot& shot) { return read_raw_shot(plan.session, shot, plan.size); });
-  if (!frames) return std::move(frames).error();
-  for (std::size_t i = 1; i < frames->size(); ++i) {
-    if (Result<void> ok = check_levels((*frames)[i], frames->front(), plan.session.path_of(shots[i])); !ok)
-      return std::move(ok).error();
-  }
-  std::vector<RawFrame> lit = take(*frames, plan.lit.size());
-  std::optional<RawFrame> dark;
-  if (plan.dark) dark = std::move(take(*frames, 1).front());
-  const Shot& first = plan.lit.front();
-  pipeline::Mosaics mosaics(std::move(lit), std::move(dark), *plan.calibration.response,
-                            {first.exposure_us, first.iso});
-  more.repeats = mosaics.alike(take(*frames, plan.repeats.size()));
-  more.parallel = mosaics.alike(take(*frames, plan.parallel.size()));
-  more.brackets = std::move(*frames);
-  return pipeline::Frames(std::move(mosaics));
-}
-
-Result<pipeline::Frames> read_developed(const SessionPlan& plan, const std::vector<Shot>& shots,
-                                        const JobContext& context, MoreFrames& more) {
-  Result<std::vector<Image<float>>> frames = read_frames<Image<float>>(
-      shots, context, [&](const Shot& shot) { return read_developed_shot(plan.session, shot); });
-  if (!frames) return std::move(frames).error();
-  std::vector<Image<float>> lit = take(*frames, plan.lit.size());
-  const std::vector<Image<float>> dark = take(*frames, plan.dark ? 1 : 0);
-  const Shot& first = plan.lit.front();
-  for (auto* list : {&lit, &*frames}) {
-    for (Image<float>& image : *list) {
-      if (!dark.empty()) subtract(image, dark.front());
-      scale(image, 1 / (first.exposure_us * 1e-6 * first.iso / 100));
-    }
-  }
-  more.repeats = pipeline::Developed{take(*frames, plan.repeats.size())};
-  more.parallel = pipeline::Developed{std::move(*frames)};
-  return pipeline::Frames(pipeline::Developed{std::move(lit)});
-}
-
-// Of what the surface mirrors, over the share of what it scatters.
-double lobe_share_of(Polariser polariser, const Films& films) {
-  switch (polariser) {
-    case Polariser::kNone:
-      break;
-    case Polariser::kParallel:
-      return solver::kParallelLobeShare;
-    case Polariser::kCrossed:
-      return solver::kParallelLobeShare * films.leak;
-  }
-  return 1;
-}
-
-// Before an hour of work.
-Result<void> check_memory(const SessionPlan& plan, int threads) {
-  const std::uint64_t needed = memory_needed(plan, threads);
-  const std::uint64_t free = available_memory_bytes();
-  if (free == 0 || needed <= free) return {};
-  return Error{ErrorKind::kTryAgain, "not enough memory", plan.session.folder.string(),
-               fmt::format("{} MB are needed, {} MB are free", needed >> 20, free >> 20),
-               "close other programs, or solve on a larger machine"};
-}
-
-// From here on the cloth is level and the rig tilted: maps are those of the cloth's own plane.
-Result<void> lay_level(const Session& session, pipeline::Photographs& photographs) {
-  const ClothPose& pose = session.pose;
-  if (pose.is_level()) return {};
-  const double height_mm = session.cloth_height_mm;
-  if (photographs.camera) photographs.camera = seen_from(pose, height_mm, *photographs.camera);
-  if (photographs.light_covariance)
-    photographs.light_covariance = seen_from(pose, *std::move(photographs.light_covariance));
-  Result<LightField> field = LightField::make(seen_from(pose, height_mm, photographs.field->lights()),
-                                              photographs.camera, photographs.size, height_mm);
-  if (!field) return std::move(field).error();
-  photographs.field = std::move(*field);
+// All shots that are read. Their names tell whether they are raw.
+Result<void> choose_shots(const std::vector<int>& leds, SolvePlan& plan) {
+  Result<std::vector<Shot>> lit = choose_lit(plan.session, leds);
+  if (!lit) return std::move(lit).error();
+  plan.lit = std::move(*lit);
+  if (const Shot* dark = plan.session.dark()) plan.dark = *dark;
+  plan.raw = !is_linear_image(plan.session.path_of(plan.lit.front()));
+  choose_parallel(plan);
+  choose_more(plan);
   return {};
 }
 
-SolveInput input_of(const SessionPlan& plan) {
+SolveInput input_of(const SolvePlan& plan) {
   SolveInput input = {.session = plan.session.fabric,
                       .calibration = plan.calibration.id,
                       .cloth_height_mm = plan.session.cloth_height_mm};
@@ -243,142 +140,93 @@ SolveInput input_of(const SessionPlan& plan) {
 }
 
 // The session, as far as it says itself what is solved.
-Result<SessionPlan> begin_plan(const SessionOptions& options) {
-  SessionPlan plan;
+Result<SolvePlan> begin_plan(const SessionOptions& options) {
+  SolvePlan plan;
   Result<Session> session = read_complete_session(options.folder);
   if (!session) return std::move(session).error();
   plan.session = std::move(*session);
+  const fs::path& folder = plan.session.folder;
+  plan.where = folder.string();
+  plan.session_name = absolute_folder(folder).filename().string();
+  plan.solves = folder / "solve";
+  if (const fs::path truth = folder / "truth" / "normal.exr"; is_there(truth)) plan.truth = truth;
   leave_out_by_person(plan);
   if (!options.accepted_moved.is_null()) plan.session.document["accepted_moved"] = options.accepted_moved;
   tell_of_moved_rig(plan);
   return plan;
 }
 
-// Lit shots and the dark one.
-Result<void> choose_first(const SessionOptions& options, SessionPlan& plan) {
-  Result<std::vector<Shot>> lit = choose_lit(plan.session, options.leds);
-  if (!lit) return std::move(lit).error();
-  plan.lit = std::move(*lit);
-  if (const Shot* dark = plan.session.dark()) plan.dark = *dark;
-  return {};
+// The calibration that is named, or the session's own.
+Result<Calibration> calibration_of(const Session& session, const fs::path& named) {
+  if (!named.empty()) return read_calibration(named);
+  Result<Calibration> own = read_calibration(session.calibration_folder());
+  if (!own || own->id == session.calibration_id) return own;
+  return Error{ErrorKind::kBadData, "calibration is not the one of the session",
+               session.calibration_folder().string(),
+               fmt::format("its id is {:.12}, session.json names {:.12}", own->id, session.calibration_id),
+               "restore the session's calibration folder, or name another with --calibration"};
+}
+
+// The size that all frames have.
+Result<Size> look_at_headers(const SolvePlan& plan) {
+  FrameHeaders headers(
+      plan.session, plan.calibration,
+      "name the calibration of this rig with --calibration, or calibrate the rig as it is now");
+  for (const Shot& shot : plan.frames()) {
+    if (Result<void> ok = headers.look_at(shot); !ok) return std::move(ok).error();
+  }
+  return headers.size();
 }
 
 }  // namespace
 
-std::vector<Shot> SessionPlan::frames() const {
-  std::vector<Shot> all = lit;
-  if (dark) all.push_back(*dark);
-  all.insert(all.end(), repeats.begin(), repeats.end());
-  all.insert(all.end(), parallel.begin(), parallel.end());
-  all.insert(all.end(), brackets.begin(), brackets.end());
-  return all;
-}
-
-std::uint64_t memory_needed(const SessionPlan& plan, int threads) {
-  const auto pixels = static_cast<std::uint64_t>(plan.size.pixels());
-  const std::size_t frames = plan.frames().size();
-  const std::size_t decoding = std::min(static_cast<std::size_t>(threads), frames);
-  const std::uint64_t bytes_a_pixel = plan.raw ? 2 : 12;
-  const std::uint64_t of_level = plan.extent == solver::Extent::kWholeFrame
-                                     ? pixels * pipeline::reference_bytes_a_pixel(plan.raw ? 1 : 3)
-                                     : 0;
-  return pixels * bytes_a_pixel * (frames + decoding) + of_level +
-         static_cast<std::uint64_t>(plan.size.width) * 128 * 150 + (std::uint64_t{64} << 20);
-}
-
-Result<SessionPlan> plan_session(const SessionOptions& options) {
-  Result<SessionPlan> begun = begin_plan(options);
-  if (!begun) return begun;
-  SessionPlan plan = std::move(*begun);
-  const bool own = options.calibration.empty();
-  Result<Calibration> calibration =
-      read_calibration(own ? plan.session.calibration_folder() : options.calibration);
+Result<SolvePlan> plan_session(const SessionOptions& options) {
+  Result<SolvePlan> plan = begin_plan(options);
+  if (!plan) return plan;
+  Result<Calibration> calibration = calibration_of(plan->session, options.calibration);
   if (!calibration) return std::move(calibration).error();
-  plan.calibration = std::move(*calibration);
-  if (own && plan.calibration.id != plan.session.calibration_id) {
-    return Error{ErrorKind::kBadData, "calibration is not the one of the session",
-                 plan.session.calibration_folder().string(),
-                 fmt::format("its id is {:.12}, session.json names {:.12}", plan.calibration.id,
-                             plan.session.calibration_id),
-                 "restore the session's calibration folder, or name another with --calibration"};
-  }
-
-  if (Result<void> chosen = choose_first(options, plan); !chosen) return std::move(chosen).error();
-  FrameHeaders headers(
-      plan.session, plan.calibration,
-      "name the calibration of this rig with --calibration, or calibrate the rig as it is now");
-  if (Result<void> ok = headers.look_at(plan.lit.front()); !ok) return std::move(ok).error();
-  plan.raw = headers.is_raw();
-  plan.size = headers.size();
-  choose_parallel(plan);
-  choose_more(plan);
-  for (const Shot& shot : plan.frames()) {
-    if (Result<void> ok = headers.look_at(shot); !ok) return std::move(ok).error();
-  }
-  plan.input = input_of(plan);
+  plan->calibration = std::move(*calibration);
+  if (Result<void> chosen = choose_shots(options.leds, *plan); !chosen) return std::move(chosen).error();
+  const Result<Size> size = look_at_headers(*plan);
+  if (!size) return size.error();
+  plan->size = *size;
+  plan->input = input_of(*plan);
   return plan;
 }
 
-Result<SessionPlan> plan_unopened(const SessionOptions& options, const Calibration& calibration) {
-  Result<SessionPlan> begun = begin_plan(options);
-  if (!begun) return begun;
-  SessionPlan plan = std::move(*begun);
-  plan.calibration = calibration;
-  if (Result<void> chosen = choose_first(options, plan); !chosen) return std::move(chosen).error();
-  if (Result<void> ok = suits(calibration, plan.session, {}); !ok) return std::move(ok).error();
-  plan.raw = !is_linear_image(plan.session.path_of(plan.lit.front()));
-  plan.size = calibration.camera->size;
-  choose_parallel(plan);
-  choose_more(plan);
-  plan.input = input_of(plan);
+Result<SolvePlan> plan_unopened(const SessionOptions& options, const Calibration& calibration) {
+  Result<SolvePlan> plan = begin_plan(options);
+  if (!plan) return plan;
+  plan->calibration = calibration;
+  if (Result<void> chosen = choose_shots(options.leds, *plan); !chosen) return std::move(chosen).error();
+  if (Result<void> ok = suits(calibration, plan->session, {}); !ok) return std::move(ok).error();
+  plan->size = calibration.camera->size;
+  plan->input = input_of(*plan);
   return plan;
 }
 
-Result<LoadedSession> load_session(const SessionPlan& plan, const JobContext& context) {
-  const std::vector<Shot> shots = plan.frames();
-  const int threads = std::min(resolved_threads(context.threads), static_cast<int>(shots.size()));
-  if (Result<void> room = check_memory(plan, threads); !room) return std::move(room).error();
-
-  LoadedSession loaded;
-  loaded.warnings = plan.warnings;
-  pipeline::Photographs& photographs = loaded.photographs;
-  photographs.size = plan.size;
-  photographs.albedo_scale = plan.calibration.subject.albedo_scale;
-  for (const Shot& shot : plan.lit) photographs.leds.push_back(shot.led);
-  Result<Lights> lights = select_lights(*plan.calibration.lights, photographs.leds);
-  if (!lights) return std::move(lights).error();
-  if (plan.lit.front().polariser != Polariser::kNone && plan.session.films.scattered != 1)
-    lights =
-        brightened(std::move(*lights), std::vector<double>(plan.lit.size(), plan.session.films.scattered));
-  Result<LightField> field =
-      LightField::make(std::move(*lights), plan.calibration.camera, plan.size, plan.session.cloth_height_mm);
-  if (!field) return std::move(field).error();
-  photographs.field = std::move(*field);
-  photographs.camera = plan.calibration.camera;
-  photographs.spread = plan.calibration.spread;
-  photographs.lateral = plan.calibration.lateral;
-  photographs.light_covariance = plan.calibration.light_covariance;
-  photographs.color = plan.calibration.color;
-
-  MoreFrames more;
-  Result<pipeline::Frames> frames =
-      plan.raw ? read_mosaics(plan, shots, context, more) : read_developed(plan, shots, context, more);
-  if (!frames) return std::move(frames).error();
-  photographs.frames = std::move(*frames);
-  photographs.lobe_share = lobe_share_of(plan.lit.front().polariser, plan.session.films);
-  if (plan.raw && plan.calibration.response->veil)
-    loaded.conditions.veil = plan.calibration.response->veil->share;
-  if (Result<void> ok = replace_bad_photosites(plan, context, loaded, more); !ok) {
-    return std::move(ok).error();
-  }
-  if (!plan.parallel.empty()) photographs.parallel = std::move(more.parallel);
-  join_brackets(plan, loaded, more);
-  if (Result<void> ok = leave_out_useless_lights(plan, loaded); !ok) return std::move(ok).error();
-  if (Result<void> ok = follow_drift(plan, context, loaded, more); !ok) return std::move(ok).error();
-  if (Result<void> ok = lay_level(plan.session, photographs); !ok) return std::move(ok).error();
-  if (Result<void> ok = follow_cloth(context, loaded); !ok) return std::move(ok).error();
-  photographs.plane_weights = pipeline::measure_plane_weights(photographs);
-  return loaded;
+Result<void> plan_second_pose(const fs::path& folder, const solver::MethodName& method,
+                              const SessionOptions& first, SolvePlan& plan) {
+  const auto unfit = [&](ErrorKind kind, std::string why, std::string remedy) {
+    return Error{kind, "second pose cannot be used", folder.string(), std::move(why), std::move(remedy)};
+  };
+  if (method.level != solver::Level::kRobust && method.level != solver::Level::kReference)
+    return unfit(ErrorKind::kUsage, fmt::format("{} seeks no lobe", method.name),
+                 "solve with --quality robust or reference");
+  Result<SolvePlan> second =
+      plan_session({.folder = folder, .calibration = first.calibration, .leds = first.leds});
+  if (!second) return std::move(second).error();
+  if (second->input == plan.input)
+    return unfit(ErrorKind::kUsage, "it is the session that is solved", "name the scan of the other pose");
+  if (second->calibration.id != plan.calibration.id)
+    return unfit(ErrorKind::kBadData, "it was scanned with another calibration", "scan both poses in one go");
+  if (second->parallel.empty() != plan.parallel.empty())
+    return unfit(ErrorKind::kBadData,
+                 "one of the two was scanned through crossed and parallel films, the other was not",
+                 "scan both in the same way");
+  plan.input.second_pose = object_of(second->input);
+  plan.second_pose = std::make_shared<const SolvePlan>(std::move(*second));
+  return {};
 }
 
 }  // namespace weft::app

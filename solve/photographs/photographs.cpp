@@ -98,6 +98,10 @@ std::optional<NoiseModel> Photographs::noise() const {
   return std::visit([](const auto& kind) { return kind.noise_model(); }, frames);
 }
 
+std::size_t Photographs::light_of(int led) const {
+  return static_cast<std::size_t>(std::ranges::find(leds, led) - leds.begin());
+}
+
 Result<void> leave_out(std::span<const std::size_t> lights, Photographs& photographs) {
   if (lights.empty()) return {};
   std::vector<int> kept;  // from 1

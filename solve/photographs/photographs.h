@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include "core/rig/point_spread.h"
 #include "core/rig/radiometry.h"
 #include "core/rig/veil.h"
+#include "core/solve/solve_parts.h"
 #include "solve/photographs/gloss_samples.h"
 #include "solver/method.h"
 
@@ -91,6 +93,12 @@ using Frames = std::variant<Developed, Mosaics>;
 std::vector<View<const float>> readings_of(const Frames& frames, std::size_t k, Rect part,
                                            View<float> scratch);
 
+/// What was found in photographs and put right (docs/conditions.md).
+struct Conditions {
+  ConditionFacts facts;               ///< as solve.json has them
+  std::vector<std::string> warnings;  ///< a sentence each
+};
+
 /// What a solve starts from, in memory: K photographs of one cloth, photograph k lit by light k of the field
 /// alone.
 struct Photographs {
@@ -111,10 +119,13 @@ struct Photographs {
   AlbedoScale albedo_scale = AlbedoScale::kRelative;
   std::array<double, 3> plane_weights = solver::kLuminance;  ///< of RGB, as of solver::TileInput
   std::optional<ColorTransform> color;  ///< of solved albedo, where the calibration has one
+  Conditions conditions;                ///< of all of them as they were read; a part or a half has none
 
   std::size_t count() const;
   Planes planes() const;
   std::optional<NoiseModel> noise() const;  ///< of one reading; RGB has none
+  /// The place of a LED among the lights; their number where it is not among them.
+  std::size_t light_of(int led) const;
   const Mosaics* mosaics() const { return std::get_if<Mosaics>(&frames); }
   Mosaics* mosaics() { return std::get_if<Mosaics>(&frames); }
 };

@@ -12,6 +12,7 @@
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "report/downsampler.h"
+#include "solve/input/load.h"
 #include "solve/levels/shifts.h"
 #include "solve/photographs/cut.h"
 #include "solve/report/reflectance_report.h"
@@ -320,26 +321,25 @@ Error no_level_solved(const Ladder& ladder) {
       another_scan(ladder.of_session) + "; --explain lists all levels"};
 }
 
+Result<Ladder> explain_plan(const Result<SolvePlan>& plan, const SolveOptions& options,
+                            const PriceOptions& wanted, const JobContext& context) {
+  if (!plan) return plan.error();
+  Stopwatch watch;
+  Result<Photographs> photographs = load_photographs(*plan, context);
+  if (!photographs) return std::move(photographs).error();
+  return explain(std::move(*photographs), plan->is_of_rig, watch.lap(), options, wanted, context);
+}
+
 }  // namespace
 
 Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& options,
                                const PriceOptions& wanted, const JobContext& context) {
-  const Result<SessionPlan> plan = plan_session(input);
-  if (!plan) return plan.error();
-  Stopwatch watch;
-  Result<LoadedSession> loaded = load_session(*plan, context);
-  if (!loaded) return std::move(loaded).error();
-  return explain(std::move(loaded->photographs), true, watch.lap(), options, wanted, context);
+  return explain_plan(plan_session(input), options, wanted, context);
 }
 
 Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,
                               const PriceOptions& wanted, const JobContext& context) {
-  const Result<PhotoPlan> plan = plan_photos(input);
-  if (!plan) return plan.error();
-  Stopwatch watch;
-  Result<Photographs> photographs = load_photos(*plan, context);
-  if (!photographs) return std::move(photographs).error();
-  return explain(std::move(*photographs), false, watch.lap(), options, wanted, context);
+  return explain_plan(plan_photos(input), options, wanted, context);
 }
 
 Result<std::size_t> choose_level(const Ladder& ladder, const LevelWish& wish) {

@@ -74,13 +74,12 @@ report::Picture enlarged(const report::Picture& picture) {
 
 Result<std::vector<LadderStep>> draw_ladder(const SessionOptions& input, const SolveOptions& options,
                                             const fs::path& file, const JobContext& context) {
-  const Result<SessionPlan> plan = plan_session(input);
+  const Result<SolvePlan> plan = plan_session(input);
   if (!plan) return plan.error();
   const Rect area = shown_area(plan->size);
-  const fs::path truth_file = plan->session.folder / "truth" / "normal.exr";
   std::optional<Image<float>> truth;
-  if (is_there(truth_file)) {
-    Result<Image<float>> crop = crop_of(truth_file, plan->size, area);
+  if (!plan->truth.empty()) {
+    Result<Image<float>> crop = crop_of(plan->truth, plan->size, area);
     if (!crop) return std::move(crop).error();
     truth = std::move(*crop);
   }

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <iterator>
-#include <memory>
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -19,19 +18,18 @@
 #include "solve/bands/bands.h"
 #include "solve/bands/calibration_channels.h"
 #include "solve/bands/sigma_channels.h"
-#include "solve/conditions/fullness.h"
+#include "solve/conditions/exposure.h"
 #include "solve/files/condition_map.h"
 #include "solve/files/gloss_maps.h"
 #include "solve/files/map_files.h"
 #include "solve/files/pictures.h"
-#include "solve/gloss/sample_gloss.h"
+#include "solve/input/load.h"
 #include "solve/levels/frame.h"
 #include "solve/levels/shifts.h"
 #include "solve/levels/stages.h"
 #include "solve/report/left_out_report.h"
 #include "solve/report/reflectance_report.h"
 #include "solve/report/solve_report.h"
-#include "solve/run/exposure_verdict.h"
 #include "solve/run/facts_json.h"
 #include "solve/session/left_out_shots.h"
 
@@ -94,19 +92,6 @@ Result<solver::MethodName> method_named(const std::string& name) {
   return Error{ErrorKind::kUsage, "no such method", name, "", "see weft solve --help for their names"};
 }
 
-// One solve, whatever it starts from.
-struct Input {
-  std::string title;
-  SolveInput input;  // all that the id depends on besides the options
-  Size size;
-  fs::path default_parent;  // of the output
-  fs::path truth;           // normal.exr of a simulated session, or empty
-  std::vector<int> picked;  // numbers of photographs picked from a list
-  std::function<Result<LoadedSession>()> load;
-  bool is_registered = false;  // photographs come with their shifts
-  const SessionPlan* of = nullptr;
-};
-
 Json seconds_json(const SolveSeconds& seconds) {
   return {{"read", seconds.read},   {"prepare", seconds.prepare},   {"solve", seconds.solve},
           {"write", seconds.write}, {"pictures", seconds.pictures}, {"report", seconds.report}};
@@ -166,165 +151,206 @@ class Finish {
   std::optional<pipeline::SigmaChannels> sigma_;
 };
 
-// A solve under way: its steps in their order.
+// Photographs as they are solved, and what was found on the way there.
+struct Prepared {
+  pipeline::Photographs photographs;
+  std::vector<std::string> warnings;
+  pipeline::Fullness fullness;     // of the photographs as they were read
+  pipeline::SessionShifts shifts;  // of them too
+  std::vector<int> numbers;        // of photographs without a rig, by light
+};
+
+// What the maps leave behind for those who tell of them.
+struct Made {
+  explicit Made(Size size) : pictures(size), maps(size) {}
+
+  Pictures pictures;
+  MapSummary maps;
+  PhotographsSummary summary;
+  std::int64_t lost = 0;                        // pixels without a solution that have a saturated reading
+  std::optional<ReflectanceFacts> reflectance;  // where a lobe was looked for
+};
+
+// A solve under way. Its steps hand on what they found; all of them fill in the document and the seconds.
 class Run {
  public:
-  Run(const solver::MethodName& method, const Input& input, const SolveOptions& options,
+  Run(const solver::MethodName& method, const SolvePlan& plan, const SolveOptions& options,
       const JobContext& context, const Product& product)
       : method_(method),
-        input_(input),
+        plan_(plan),
         options_(options),
         context_(context),
         product_(product),
-        partial_(product.folder),
-        picked_(input.picked) {
+        partial_(product.folder) {
     facts_.id = product.id;
     facts_.solver_version = kSolverVersion;
     facts_.method = options.method;
     facts_.compression = options.compression;
-    facts_.input = input.input;
+    facts_.input = plan.input;
     facts_.foretold = options.foretold;
   }
 
-  Result<SolveReport> run() {
+  // `loaded` are photographs that are in memory, registered; else those of the plan are read.
+  Result<SolveReport> run(std::optional<pipeline::Photographs> loaded) {
     Stopwatch total;
-    if (Result<void> ok = prepare(); !ok) return std::move(ok).error();
-    if (Result<void> ok = solve_into_files(); !ok) return std::move(ok).error();
+    const bool is_part = loaded.has_value();
+    Result<Prepared> prepared = prepare(std::move(loaded));
+    if (!prepared) return std::move(prepared).error();
+    const Result<Made> made = make_maps(*prepared);
+    if (!made) return made.error();
     // A part that is solved for a price may lie where no cloth is.
-    if (facts_.pixels == 0 && !input_.is_registered)
-      return nothing_solved(input_.of != nullptr ? input_.of->session.folder.string() : input_.title,
-                            facts_.size, fullness_, summary_.of_session);
-    if (Result<void> ok = describe(); !ok) return std::move(ok).error();
+    if (facts_.pixels == 0 && !is_part)
+      return nothing_solved(plan_.where, facts_.size, prepared->fullness, made->summary.of_session);
+    if (Result<void> ok = describe(*made, prepared->fullness); !ok) return std::move(ok).error();
     if (Result<void> ok = publish(); !ok) return std::move(ok).error();
     seconds_.total = total.lap();
-    return SolveReport{product_.folder, false, std::move(facts_), maps_->expected(), {}, seconds_};
+    return SolveReport{product_.folder, false, std::move(facts_), made->maps.expected(), {}, seconds_};
   }
 
  private:
   bool is_half() const { return method_.extent == solver::Extent::kHalfSize; }
 
   // Reads the photographs, and does with them what does not need their normals.
-  Result<void> prepare() {
-    if (Result<void> begun = begin(partial_, bytes_of_maps(input_.size)); !begun) return begun;
-    Result<LoadedSession> loaded = input_.load();
-    if (!loaded) return std::move(loaded).error();
-    photographs_ = std::move(loaded->photographs);
-    facts_.conditions = facts_of(loaded->conditions);
-    warnings_ = std::move(loaded->warnings);
-    fullness_ = pipeline::fullness_of(photographs_);
+  Result<Prepared> prepare(std::optional<pipeline::Photographs> loaded) {
+    if (Result<void> begun = begin(partial_, bytes_of_maps(plan_.size)); !begun)
+      return std::move(begun).error();
+    const bool is_registered = loaded.has_value();
+    if (!loaded) {
+      Result<pipeline::Photographs> read = load_photographs(plan_, context_);
+      if (!read) return std::move(read).error();
+      loaded = std::move(*read);
+    }
+    Prepared prepared;
+    pipeline::Photographs& photographs = prepared.photographs;
+    photographs = *std::move(loaded);
+    if (!options_.deblur) photographs.spread.reset();
+    facts_.conditions = photographs.conditions.facts;
+    prepared.warnings = photographs.conditions.warnings;
+    prepared.fullness = pipeline::fullness_of(photographs);
+    if (!plan_.is_of_rig) prepared.numbers = plan_.numbers();
     seconds_.read = watch_.lap();
 
     facts_.registration.emplace();
     if (is_half()) {
-      Result<pipeline::Photographs> half = half_size(photographs_, context_.threads);
+      Result<pipeline::Photographs> half = half_size(photographs, context_.threads);
       if (!half) return std::move(half).error();
-      photographs_ = std::move(*half);
-    } else if (!input_.is_registered && options_.registration) {
-      if (Result<void> ok = register_cloth(); !ok) return ok;
+      photographs = std::move(*half);
+    } else if (!is_registered && options_.registration) {
+      if (Result<void> ok = register_cloth(prepared); !ok) return std::move(ok).error();
     }
-    facts_.size = photographs_.size;
-    facts_.lights = static_cast<int>(photographs_.count());
-    facts_.albedo_scale = photographs_.albedo_scale;
-    facts_.is_rec709 = photographs_.color.has_value();
-    return {};
+    facts_.size = photographs.size;
+    facts_.lights = static_cast<int>(photographs.count());
+    facts_.albedo_scale = photographs.albedo_scale;
+    facts_.is_rec709 = photographs.color.has_value();
+    return prepared;
   }
 
   // Finds how the cloth lay in each shot, and leaves out those in which it lay elsewhere.
-  Result<void> register_cloth() {
-    Result<pipeline::SessionShifts> found = register_shots(photographs_, context_);
+  Result<void> register_cloth(Prepared& prepared) {
+    Result<pipeline::SessionShifts> found = register_shots(prepared.photographs, context_);
     if (!found) return std::move(found).error();
-    shifts_ = std::move(*found);
-    facts_.registration = facts_of(shifts_, photographs_.leds);
-    const std::vector<std::size_t> moved = shifts_.with(pipeline::ShiftVerdict::kLeftOut);
-    for (std::size_t k = picked_.size(); k < photographs_.count(); ++k)
-      picked_.push_back(static_cast<int>(k) + 1);
-    for (auto k = moved.rbegin(); k != moved.rend(); ++k)
-      picked_.erase(picked_.begin() + static_cast<std::ptrdiff_t>(*k));
-    return leave_out(moved, photographs_);
+    prepared.shifts = std::move(*found);
+    facts_.registration = facts_of(prepared.shifts, prepared.photographs.leds);
+    const std::vector<std::size_t> moved = prepared.shifts.with(pipeline::ShiftVerdict::kLeftOut);
+    for (const std::size_t k : std::views::reverse(moved)) {
+      if (k < prepared.numbers.size())
+        prepared.numbers.erase(prepared.numbers.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+    return leave_out(moved, prepared.photographs);
   }
 
-  Result<void> solve_into_files() {
-    Result<Finish> finish = Finish::make(photographs_, context_.threads);
+  // Solves into the files, and says of the photographs what must be said while they are in memory: they are
+  // gone afterwards.
+  Result<Made> make_maps(Prepared& prepared) {
+    pipeline::Photographs& photographs = prepared.photographs;
+    Result<Finish> finish = Finish::make(photographs, context_.threads);
     if (!finish) return std::move(finish).error();
-    const PixelPitch pitch_mm = pitch_in_the_middle(photographs_);
+    const PixelPitch pitch_mm = pitch_in_the_middle(photographs);
     Result<MapFiles> files =
         MapFiles::open(partial_.path(), facts_.size, options_.compression, finish->sigma_names(), pitch_mm);
     if (!files) return std::move(files).error();
     seconds_.prepare = watch_.lap();
 
-    pictures_.emplace(facts_.size);
-    maps_.emplace(facts_.size);
+    Made made(facts_.size);
+    const Result<pipeline::FrameFacts> frame = solve_bands_into(*files, *finish, photographs, made);
+    if (!frame) return frame.error();
+    take_facts(*frame, made);
+    if (Result<void> ok = judge(prepared, *frame, made); !ok) return std::move(ok).error();
+    seconds_.report = watch_.lap();
+    if (Result<void> ok = write_condition(photographs); !ok) return std::move(ok).error();
+    photographs = {};
+
+    if (Result<void> ok = files->finish(); !ok) return std::move(ok).error();
+    if (frame->gloss) {
+      Result<void> written = write_gloss_maps(partial_.path(), *frame->gloss, facts_.albedo_scale,
+                                              options_.compression, pitch_mm, options_.previews);
+      if (!written) return std::move(written).error();
+    }
+    seconds_.write = frame->waited_seconds + watch_.lap();
+    return made;
+  }
+
+  // Band by band.
+  Result<pipeline::FrameFacts> solve_bands_into(MapFiles& files, Finish& finish,
+                                                const pipeline::Photographs& photographs, Made& made) {
     StatusTally tally;
     const auto keep = [&](const pipeline::MapBand& solved) -> Result<void> {
-      const FinishedBand band = finish->of(solved);
+      const FinishedBand band = finish.of(solved);
       tally.add(band.maps.status);
-      maps_->add(band.maps, band.sigma[pipeline::kSumOfAngle], band.calibration_deg);
-      if (options_.previews) pictures_->add(band.maps);
-      return files->write(band.maps, band.sigma);
+      made.maps.add(band.maps, band.sigma[pipeline::kSumOfAngle], band.calibration_deg);
+      if (options_.previews) made.pictures.add(band.maps);
+      return files.write(band.maps, band.sigma);
     };
-    std::vector<pipeline::Stage> stages = pipeline::stages_of(method_);
-    if (!options_.deblur) stages = pipeline::without("sharpen", std::move(stages));
-    Result<pipeline::FrameFacts> frame = solve_by(stages, photographs_, options_.tile, context_, keep);
-    if (!frame) return std::move(frame).error();
+    Result<pipeline::FrameFacts> frame = solve_frame(photographs, method_, options_.tile, context_, keep);
+    if (!frame) return frame;
     seconds_.work = frame->work;
     seconds_.solve = watch_.lap() - frame->waited_seconds;
     facts_.status = tally.counts();
-    lost_ = tally.with_both(kNoSolution, kSaturated);
     facts_.pixels = facts_.size.pixels() - facts_.status.with(kNoSolution);
-    take_facts(*frame);
-    summary_ = summarize_photographs(photographs_, picked_, warnings_, context_);
-    if (input_.of != nullptr) {
-      summary_.session = absolute_folder(input_.of->session.folder).filename().string();
-      summary_.left_out = library::left_out(input_.of->session);
-      for (const Shot& shot : input_.of->lit) summary_.shot_of_led[shot.led] = shot.index;
-    }
-    summary_.shifts = std::move(shifts_);
-    if (Result<void> ok = look_for_far_shifts(); !ok) return ok;
-    if (frame->gloss) summary_.glossy_share = frame->gloss->share;
-    summary_.shadow_reach_is_capped = frame->reference && frame->reference->shadow_reach_is_capped;
-    if (frame->left_out) facts_.check = facts_of(*frame->left_out, summary_.numbers);
-    seconds_.report = watch_.lap();
-    if (Result<void> ok = write_condition(); !ok) return ok;
-    photographs_ = {};  // their memory is needed for nothing more
-
-    if (Result<void> ok = files->finish(); !ok) return ok;
-    if (frame->gloss) {
-      const Result<void> written = write_gloss_maps(partial_.path(), *frame->gloss, facts_.albedo_scale,
-                                                    options_.compression, pitch_mm, options_.previews);
-      if (!written) return written;
-    }
-    seconds_.write = frame->waited_seconds + watch_.lap();
-    return {};
+    made.lost = tally.with_both(kNoSolution, kSaturated);
+    return frame;
   }
 
-  void take_facts(const pipeline::FrameFacts& frame) {
+  void take_facts(const pipeline::FrameFacts& frame, Made& made) {
     facts_.solved_by = facts_of(frame.tally);
     facts_.solved_by->robust_share = frame.robust_share;
     if (frame.deblur) facts_.sharpening = facts_of(*frame.deblur);
     if (frame.lateral_corner_px) facts_.lateral_color = {*frame.lateral_corner_px};
     if (frame.gloss) {
-      reflectance_ = reflectance_facts(*frame.gloss, facts_.albedo_scale);
-      facts_.reflectance = summary_of(*reflectance_);
+      made.reflectance = reflectance_facts(*frame.gloss, facts_.albedo_scale);
+      facts_.reflectance = summary_of(*made.reflectance);
     }
     if (frame.reference) {
       facts_.gates = facts_of(frame.reference->gates);
       facts_.reference = facts_of(*frame.reference);
-      for (std::string& said : warnings_of(*frame.reference)) warnings_.push_back(std::move(said));
     }
   }
 
-  // Where shots could not be registered and readings do not fit, the cloth may have moved by far.
-  Result<void> look_for_far_shifts() {
-    if (!may_have_moved_far(summary_)) return {};
-    Result<pipeline::FarShifts> far = find_far_shifts(photographs_, context_);
-    if (!far) return std::move(far).error();
-    summary_.far_shifts = std::move(*far);
+  // What the photographs say of the rig and of themselves.
+  Result<void> judge(const Prepared& prepared, const pipeline::FrameFacts& frame, Made& made) {
+    std::vector<std::string> warnings = prepared.warnings;
+    if (frame.reference) std::ranges::move(warnings_of(*frame.reference), std::back_inserter(warnings));
+    PhotographsSummary& summary = made.summary;
+    summary = summarize_photographs(prepared.photographs, prepared.numbers, warnings, context_);
+    summary.session = plan_.session_name;
+    summary.left_out = library::left_out(plan_.session);
+    for (const Shot& shot : plan_.lit) summary.shot_of_led[shot.led] = shot.index;
+    summary.shifts = prepared.shifts;
+    // Where shots could not be registered and readings do not fit, the cloth may have moved by far.
+    if (may_have_moved_far(summary)) {
+      Result<pipeline::FarShifts> far = find_far_shifts(prepared.photographs, context_);
+      if (!far) return std::move(far).error();
+      summary.far_shifts = std::move(*far);
+    }
+    if (frame.gloss) summary.glossy_share = frame.gloss->share;
+    summary.shadow_reach_is_capped = frame.reference && frame.reference->shadow_reach_is_capped;
+    if (frame.left_out) facts_.check = facts_of(*frame.left_out, summary.numbers);
     return {};
   }
 
-  Result<void> write_condition() {
+  Result<void> write_condition(const pipeline::Photographs& photographs) {
     if (!options_.condition) return {};
-    Result<void> written = write_condition_map(photographs_, facts_.method, partial_.path() / "condition.exr",
+    Result<void> written = write_condition_map(photographs, facts_.method, partial_.path() / "condition.exr",
                                                options_.compression, context_);
     const double seconds = watch_.lap();
     seconds_.solve += seconds;
@@ -333,52 +359,59 @@ class Run {
   }
 
   // Writes the pictures beside the maps, with their error where there is a truth.
-  Result<void> draw() {
+  Result<void> draw(const Pictures& pictures) {
     std::optional<TruthError> error;
-    if (!input_.truth.empty() && facts_.size == input_.size) {
-      Result<TruthError> measured = error_against(input_.truth, partial_.path() / "normal.exr");
+    if (!plan_.truth.empty() && facts_.size == plan_.size) {
+      Result<TruthError> measured = error_against(plan_.truth, partial_.path() / "normal.exr");
       if (!measured) return std::move(measured).error();
       error = std::move(*measured);
       const NormalComparison& normal = error->normal;
       facts_.error = {normal.mean_deg, normal.median_deg, normal.p95_deg, normal.max_deg};
     }
     Result<std::vector<std::string>> names =
-        pictures_->write(partial_.path(), input_.title, facts_.albedo_scale == AlbedoScale::kAbsolute,
-                         error ? &*error : nullptr);
+        pictures.write(partial_.path(), plan_.session.fabric, facts_.albedo_scale == AlbedoScale::kAbsolute,
+                       error ? &*error : nullptr);
     if (!names) return std::move(names).error();
     facts_.pictures = std::move(*names);
     if (is_there(partial_.path() / "reflectance.png")) facts_.pictures.emplace_back("reflectance.png");
     return {};
   }
 
-  // What people look at, and solve.json.
-  Result<void> describe() {
-    if (options_.previews) {
-      if (Result<void> drawn = draw(); !drawn) return drawn;
-    }
-    seconds_.pictures = watch_.lap();
+  // Everything to be warned of, the exposure first.
+  std::vector<Verdict> verdicts(const Made& made, const pipeline::Fullness& fullness) const {
     // What leaves no shadow out takes much for a highlight.
     const bool tells_highlights = method_.level && !is_half();
-    const double specular =
-        static_cast<double>(facts_.status.with(kSpecular)) / static_cast<double>(facts_.size.pixels());
-    const ExpectedError expected = maps_->expected();
-    facts_.sigma_normal_deg = maps_->sigma_facts();
-    facts_.warnings = verdicts_of(summary_, tells_highlights ? specular : 0,
-                                  tells_highlights ? facts_.check : std::nullopt, method_.level);
+    const auto pixels = static_cast<double>(facts_.size.pixels());
+    const double specular = static_cast<double>(facts_.status.with(kSpecular)) / pixels;
+    std::vector<Verdict> all = verdicts_of(made.summary, tells_highlights ? specular : 0,
+                                           tells_highlights ? facts_.check : std::nullopt, method_.level);
     const std::optional<AngleMiddle>& noise = facts_.sigma_normal_deg->noise;
     const std::optional<Verdict> exposure =
-        exposure_verdict(fullness_, static_cast<double>(lost_) / static_cast<double>(facts_.size.pixels()),
-                         noise ? noise->median : 0, summary_.of_session);
-    if (exposure) facts_.warnings.insert(facts_.warnings.begin(), *exposure);
-    SolveReportFacts report = report_facts(input_.title, facts_, summary_, *maps_, seconds_json(seconds_));
-    if (reflectance_) {
-      Result<void> ok = write_json(partial_.path() / "reflectance.json", object_of(*reflectance_));
+        exposure_verdict(fullness, static_cast<double>(made.lost) / pixels, noise ? noise->median : 0,
+                         made.summary.of_session);
+    if (exposure) all.insert(all.begin(), *exposure);
+    return all;
+  }
+
+  // What people look at, and solve.json.
+  Result<void> describe(const Made& made, const pipeline::Fullness& fullness) {
+    if (options_.previews) {
+      if (Result<void> drawn = draw(made.pictures); !drawn) return drawn;
+    }
+    seconds_.pictures = watch_.lap();
+    facts_.sigma_normal_deg = made.maps.sigma_facts();
+    facts_.warnings = verdicts(made, fullness);
+    SolveReportFacts report =
+        report_facts(plan_.session.fabric, facts_, made.summary, made.maps, seconds_json(seconds_));
+    if (made.reflectance) {
+      Result<void> ok = write_json(partial_.path() / "reflectance.json", object_of(*made.reflectance));
       if (!ok) return ok;
-      report.reflectance = reflectance_;
-      report.gloss = reflectance_said(*reflectance_);
+      report.reflectance = made.reflectance;
+      report.gloss = reflectance_said(*made.reflectance);
     }
     if (Result<void> ok = write_report(partial_.path(), report); !ok) return ok;
     seconds_.report += watch_.lap();
+    const ExpectedError expected = made.maps.expected();
     facts_.taken = {seconds_until_published(seconds_), expected.total_deg, expected.solved,
                     seconds_json(seconds_)};
     Json said = json_of(facts_);
@@ -394,24 +427,14 @@ class Run {
   }
 
   const solver::MethodName& method_;
-  const Input& input_;
+  const SolvePlan& plan_;
   const SolveOptions& options_;
   const JobContext& context_;
   const Product& product_;
   PartialFolder partial_;
   Stopwatch watch_;
-  pipeline::Photographs photographs_;
-  std::vector<int> picked_;  // numbers of the photographs of a list, by light
-  pipeline::SessionShifts shifts_;
-  pipeline::Fullness fullness_;  // of the photographs as they were read
-  std::int64_t lost_ = 0;        // pixels without a solution that have a saturated reading
-  std::vector<std::string> warnings_;
-  std::optional<ReflectanceFacts> reflectance_;  // where a lobe was looked for
   SolveFacts facts_;
   SolveSeconds seconds_;
-  std::optional<Pictures> pictures_;
-  std::optional<MapSummary> maps_;
-  PhotographsSummary summary_;
 };
 
 // A person asks for what a batch made: it waits no longer, and is as new as if it were made now.
@@ -422,10 +445,11 @@ void end_waiting(const Product& product, Json document) {
   fs::last_write_time(product.folder.parent_path(), fs::file_time_type::clock::now(), ignored);
 }
 
-Result<SolveReport> solve(const solver::MethodName& method, const Input& input, const SolveOptions& options,
-                          const JobContext& context) {
+Result<SolveReport> solve(const solver::MethodName& method, const SolvePlan& plan,
+                          const SolveOptions& options, const JobContext& context,
+                          std::optional<pipeline::Photographs> loaded = {}) {
   const Product product =
-      product_of(kSolveProduct, inputs_of(input.input, options), input.default_parent, options.output);
+      product_of(kSolveProduct, inputs_of(plan.input, options), plan.solves, options.output);
   Result<std::optional<Json>> finished = find_finished(product);
   if (!finished) return std::move(finished).error();
   if (*finished) {
@@ -435,60 +459,12 @@ Result<SolveReport> solve(const solver::MethodName& method, const Input& input, 
     if (options.plan.empty() && (*finished)->contains("plan")) end_waiting(product, **finished);
     return SolveReport{product.folder, true, std::move(*facts), {}, {}, {}};
   }
-  return Run(method, input, options, context, product).run();
-}
-
-Result<std::optional<SessionPlan>> plan_second_pose(const solver::MethodName& method,
-                                                    const SessionPlan& first, const SessionOptions& input,
-                                                    const SolveOptions& options) {
-  if (options.second_pose.empty()) return std::optional<SessionPlan>();
-  const auto unfit = [&](ErrorKind kind, std::string why, std::string remedy) {
-    return Error{kind, "second pose cannot be used", options.second_pose.string(), std::move(why),
-                 std::move(remedy)};
-  };
-  if (method.level != solver::Level::kRobust && method.level != solver::Level::kReference)
-    return unfit(ErrorKind::kUsage, options.method + " seeks no lobe",
-                 "solve with --quality robust or reference");
-  Result<SessionPlan> second =
-      plan_session({.folder = options.second_pose, .calibration = input.calibration, .leds = input.leds});
-  if (!second) return std::move(second).error();
-  if (second->input == first.input)
-    return unfit(ErrorKind::kUsage, "it is the session that is solved", "name the scan of the other pose");
-  if (second->calibration.id != first.calibration.id)
-    return unfit(ErrorKind::kBadData, "it was scanned with another calibration", "scan both poses in one go");
-  if (second->parallel.empty() != first.parallel.empty())
-    return unfit(ErrorKind::kBadData,
-                 "one of the two was scanned through crossed and parallel films, the other was not",
-                 "scan both in the same way");
-  return std::optional(std::move(*second));
-}
-
-// The frames of one pose at a time.
-Result<LoadedSession> load_poses(const SessionPlan& plan, const std::optional<SessionPlan>& second,
-                                 const JobContext& context) {
-  if (!second) return load_session(plan, context);
-  std::optional<pipeline::GlossSamples> samples;
-  std::vector<std::string> warnings;
-  {
-    const Result<LoadedSession> other = load_session(*second, context);
-    if (!other) return other.error();
-    for (const std::string& warning : other->warnings) warnings.push_back("second pose: " + warning);
-    const std::unique_ptr<solver::Method> robust = solver::robust_method();
-    Result<pipeline::GlossSamples> sampled =
-        sample_gloss(other->photographs, *robust, nullptr, context.threads);
-    if (!sampled) return std::move(sampled).error();
-    samples = std::move(*sampled);
-  }
-  Result<LoadedSession> loaded = load_session(plan, context);
-  if (!loaded) return loaded;
-  loaded->photographs.second_pose = std::move(samples);
-  std::ranges::move(warnings, std::back_inserter(loaded->warnings));
-  return loaded;
+  return Run(method, plan, options, context, product).run(std::move(loaded));
 }
 
 }  // namespace
 
-std::string id_of_solve(const SessionPlan& plan, const SolveOptions& options) {
+std::string id_of_solve(const SolvePlan& plan, const SolveOptions& options) {
   return product_id(inputs_of(plan.input, options));
 }
 
@@ -496,23 +472,14 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
                                   const JobContext& context) {
   const Result<solver::MethodName> method = method_named(options.method);
   if (!method) return method.error();
-  Result<SessionPlan> plan = plan_session(input);
+  Result<SolvePlan> plan = plan_session(input);
   if (!plan) return std::move(plan).error();
   plan->extent = method->extent;
-  Result<std::optional<SessionPlan>> second = plan_second_pose(*method, *plan, input, options);
-  if (!second) return std::move(second).error();
-  if (*second) plan->input.second_pose = object_of((*second)->input);
-  const fs::path truth = plan->session.folder / "truth" / "normal.exr";
-  return solve(*method,
-               {.title = plan->session.fabric,
-                .input = plan->input,
-                .size = plan->size,
-                .default_parent = plan->session.folder / "solve",
-                .truth = is_there(truth) ? truth : fs::path(),
-                .picked = {},
-                .load = [&] { return load_poses(*plan, *second, context); },
-                .of = &*plan},
-               options, context);
+  if (!options.second_pose.empty()) {
+    Result<void> second = plan_second_pose(options.second_pose, *method, input, *plan);
+    if (!second) return std::move(second).error();
+  }
+  return solve(*method, *plan, options, context);
 }
 
 Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& options,
@@ -521,25 +488,9 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   if (!method) return method.error();
   PhotoOptions photos = input;
   photos.clipped = method->keeps_clipped ? Clipped::kKeep : Clipped::kMark;
-  Result<PhotoPlan> plan = plan_photos(photos);
-  if (!plan) return std::move(plan).error();
-  const fs::path source =
-      fs::absolute(input.light_file.empty() ? input.folder : input.light_file).lexically_normal();
-  const fs::path name = source.has_filename() ? source.stem() : source.parent_path().filename();
-  Result<SolveReport> report = solve(*method,
-                                     {.title = name.string(),
-                                      .input = plan->input,
-                                      .size = plan->size,
-                                      .default_parent = fs::current_path() / (name.string() + "-solve"),
-                                      .truth = {},
-                                      .picked = input.lights,
-                                      .load = [&]() -> Result<LoadedSession> {
-                                        Result<pipeline::Photographs> photographs =
-                                            load_photos(*plan, context);
-                                        if (!photographs) return std::move(photographs).error();
-                                        return LoadedSession{std::move(*photographs), {}, {}};
-                                      }},
-                                     options, context);
+  const Result<SolvePlan> plan = plan_photos(photos);
+  if (!plan) return plan.error();
+  Result<SolveReport> report = solve(*method, *plan, options, context);
   if (report) report->transfer = plan->transfer;
   return report;
 }
@@ -548,18 +499,9 @@ Result<SolveReport> solve_loaded(pipeline::Photographs photographs, const SolveO
                                  const JobContext& context) {
   const Result<solver::MethodName> method = method_named(options.method);
   if (!method) return method.error();
-  return solve(*method,
-               {.title = {},
-                .input = {},
-                .size = photographs.size,
-                .default_parent = {},
-                .truth = {},
-                .picked = {},
-                .load = [&]() -> Result<LoadedSession> {
-                  return LoadedSession{std::move(photographs), {}, {}};
-                },
-                .is_registered = true},
-               options, context);
+  SolvePlan plan;
+  plan.size = photographs.size;
+  return solve(*method, plan, options, context, std::move(photographs));
 }
 
 }  // namespace weft::app

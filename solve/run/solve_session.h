@@ -49,12 +49,12 @@ struct SolveReport {
   bool was_there = false;  ///< a complete solve of the same inputs and options was found
   SolveFacts facts;
   ExpectedError expected;            ///< of this run: zero if was_there
-  std::optional<Transfer> transfer;  ///< of photographs, as of PhotoPlan
+  std::optional<Transfer> transfer;  ///< of photographs, as of SolvePlan
   SolveSeconds seconds;              ///< of this run: zero if was_there
 };
 
 /// The id that solve_session() gives the solve of this plan.
-std::string id_of_solve(const SessionPlan& plan, const SolveOptions& options);
+std::string id_of_solve(const SolvePlan& plan, const SolveOptions& options);
 
 /// Solves a session into its maps (docs/formats.md): normal.exr, albedo.exr, sigma.exr, residual.exr,
 /// status.png, solve.json, previews, report.json and report.html, made aside and published whole.

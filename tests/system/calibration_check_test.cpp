@@ -18,6 +18,7 @@
 #include "simulator/captures.h"
 #include "simulator/captures_layout.h"
 #include "simulator/scene/scene_rig.h"
+#include "solve/input/load.h"
 #include "solve/input/session_input.h"
 #include "solve/run/solve_session.h"
 #include "tests/system/program.h"
@@ -81,9 +82,9 @@ class CalibrationCheck : public testing::Test {
   static void calibrate() {
     const auto plan = plan_session({root_ / "cloth.weft", {}, {}});
     ASSERT_TRUE(plan) << plan.error().message();
-    const auto loaded = load_session(*plan, {});
+    const auto loaded = load_photographs(*plan, {});
     ASSERT_TRUE(loaded) << loaded.error().message();
-    const auto tags = tags_in(loaded->photographs, {simulator::TagSettings().dictionary});
+    const auto tags = tags_in(*loaded, {simulator::TagSettings().dictionary});
     ASSERT_TRUE(tags) << tags.error().message();
     ASSERT_EQ(tags->size(), 4U);
     Calibration rig = plan->calibration;
@@ -414,11 +415,12 @@ TEST_F(CalibrationCheck, PatchesOfPaperThatIsNotLambertianAboveTheClothSayThatNo
   EXPECT_EQ(measured->calibration.patches[0].height_mm, 0.3);
   const auto plan = plan_session({root_ / "paper.weft", root_ / "with paper", {}});
   ASSERT_TRUE(plan) << plan.error().message();
-  const auto loaded = load_session(*plan, {});
+  const auto loaded = load_photographs(*plan, {});
   ASSERT_TRUE(loaded) << loaded.error().message();
-  EXPECT_THAT(loaded->warnings, testing::IsEmpty());
-  ASSERT_EQ(loaded->conditions.drift.size(), 10U);
-  for (const LedDrift& led : loaded->conditions.drift) EXPECT_NEAR(led.factor, 1, 0.002) << "LED " << led.led;
+  EXPECT_THAT(loaded->conditions.warnings, testing::IsEmpty());
+  ASSERT_EQ(loaded->conditions.facts.drift.size(), 10U);
+  for (const ConditionedLed& led : loaded->conditions.facts.drift)
+    EXPECT_NEAR(led.factor, 1, 0.002) << "LED " << led.led;
 }
 
 TEST_F(CalibrationCheck, ADimmedLedIsFoundInTheLightOfThePatches) {

@@ -22,6 +22,7 @@
 #include "simulator/camera/dng_writer.h"
 #include "solve/bands/bands.h"
 #include "solve/bands/calibration_channels.h"
+#include "solve/input/load.h"
 #include "solve/input/session_input.h"
 #include "tests/system/session_test.h"
 
@@ -48,13 +49,12 @@ T need(Result<T> result) {
   return *std::move(result);
 }
 
-Solved solve(const app::LoadedSession& loaded) {
-  const pipeline::Photographs& photographs = loaded.photographs;
+Solved solve(const pipeline::Photographs& photographs) {
   const pipeline::Mosaics* mosaics = photographs.mosaics();
   Solved out = {Image<float>(photographs.size, 3),
                 Image<std::uint16_t>(photographs.size),
-                object_of(app::facts_of(loaded.conditions)),
-                loaded.warnings,
+                object_of(photographs.conditions.facts),
+                photographs.conditions.warnings,
                 mosaics != nullptr ? mosaics->replaced : std::vector<Photosite>(),
                 photographs.noise().value_or(NoiseModel())};
   const auto keep = [&](const pipeline::MapBand& band) -> Result<void> {
@@ -72,7 +72,7 @@ Solved solve(const app::LoadedSession& loaded) {
 }
 
 Solved solve(const fs::path& session, const fs::path& calibration = {}) {
-  return solve(need(app::load_session(need(app::plan_session({session, calibration, {}})), {})));
+  return solve(need(app::load_photographs(need(app::plan_session({session, calibration, {}})), {})));
 }
 
 // Degrees between the mean normal of an area and that of a level card: errors that noise does not hide.
@@ -161,8 +161,8 @@ class BadPhotosites : public Conditions {
     scene.camera.defects.temperature_c = 45;
     scene.effects.dark_current = scene.effects.noise = true;
     simulate(scene, session_);
-    const app::SessionPlan plan = need(app::plan_session({session_, {}, {}}));
-    app::LoadedSession loaded = need(app::load_session(plan, {}));
+    const pipeline::SolvePlan plan = need(app::plan_session({session_, {}, {}}));
+    pipeline::Photographs loaded = need(app::load_photographs(plan, {}));
     const Solved with = solve(loaded);
     EXPECT_EQ(with.conditions["hot_photosites"], with.replaced.size());
     for (const auto& [y, x] : with.replaced) {
@@ -171,11 +171,11 @@ class BadPhotosites : public Conditions {
 
     std::vector<RawFrame> as_taken;
     for (const Shot& shot : plan.lit) as_taken.push_back(need(capture::decode_raw(session_ / shot.file)));
-    const pipeline::Mosaics& mosaics = *loaded.photographs.mosaics();
+    const pipeline::Mosaics& mosaics = *loaded.mosaics();
     pipeline::Mosaics unmended(std::move(as_taken), need(capture::decode_raw(dark())), mosaics.response,
                                mosaics.exposure);
     unmended.replaced = mosaics.replaced;
-    loaded.photographs.frames = std::move(unmended);
+    loaded.frames = std::move(unmended);
     const auto is_bad = [&](int x, int y) {
       return std::binary_search(with.replaced.begin(), with.replaced.end(), Photosite{y, x});
     };
@@ -248,11 +248,10 @@ TEST_F(Conditions, LedsThatChangedSinceTheirCalibrationAreToldByTheCloth) {
   EXPECT_FALSE(right.conditions.contains("cloth_gains"));
   ASSERT_TRUE(told.conditions.contains("cloth_gains")) << told.conditions;
   EXPECT_EQ(told.conditions["cloth_gains"]["leds"].size(), 10U);
-  app::LoadedSession as_calibrated =
-      need(app::load_session(need(app::plan_session({session_, other, {}})), {}));
-  as_calibrated.photographs.field = need(
-      LightField::make(*need(read_calibration(other)).lights, as_calibrated.photographs.camera,
-                       as_calibrated.photographs.size, as_calibrated.photographs.field->cloth_height_mm()));
+  pipeline::Photographs as_calibrated =
+      need(app::load_photographs(need(app::plan_session({session_, other, {}})), {}));
+  as_calibrated.field = need(LightField::make(*need(read_calibration(other)).lights, as_calibrated.camera,
+                                              as_calibrated.size, as_calibrated.field->cloth_height_mm()));
   const double alone = mean_error_deg(solve(as_calibrated), session_);
   const double with = mean_error_deg(told, session_), best = mean_error_deg(right, session_);
   RecordProperty("off_deg", std::to_string(alone));
@@ -452,9 +451,9 @@ TEST_F(Conditions, WithTwoLedsThatLitThereIsNothingToSolve) {
 
 TEST_F(Conditions, CalibrationsShareOfSigmaIsWorkedOutOnAGridAndBlended) {
   simulate(scene_named("golden", {48, 32}), session_);
-  const app::LoadedSession loaded = need(app::load_session(need(app::plan_session({session_, {}, {}})), {}));
-  const pipeline::Photographs& photographs = loaded.photographs;
-  const Solved solved = solve(loaded);
+  const pipeline::Photographs photographs =
+      need(app::load_photographs(need(app::plan_session({session_, {}, {}})), {}));
+  const Solved solved = solve(photographs);
   ParameterCovariance covariance;
   for (const int led : photographs.leds)
     covariance.parameters.push_back("led" + std::to_string(led) + ".log_flux");

@@ -10,6 +10,7 @@
 
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
+#include "solve/input/load.h"
 #include "solve/input/session_input.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
@@ -30,16 +31,16 @@ class FilmPairSession : public testing::Test {
     simulate(scene, folder_);
   }
 
-  app::SessionPlan planned(const fs::path& calibration = {}) const {
-    Result<app::SessionPlan> plan =
+  pipeline::SolvePlan planned(const fs::path& calibration = {}) const {
+    Result<pipeline::SolvePlan> plan =
         app::plan_session({.folder = folder_, .calibration = calibration, .leds = {}});
     EXPECT_TRUE(plan) << plan.error().message();
-    return plan ? std::move(*plan) : app::SessionPlan();
+    return plan ? std::move(*plan) : pipeline::SolvePlan();
   }
-  static app::LoadedSession loaded(const app::SessionPlan& plan) {
-    Result<app::LoadedSession> session = app::load_session(plan, {});
+  static pipeline::Photographs loaded(const pipeline::SolvePlan& plan) {
+    Result<pipeline::Photographs> session = app::load_photographs(plan, {});
     EXPECT_TRUE(session) << session.error().message();
-    return session ? std::move(*session) : app::LoadedSession();
+    return session ? std::move(*session) : pipeline::Photographs();
   }
   void change(const std::function<void(Session&)>& how) const {
     Result<Session> session = read_session(folder_);
@@ -53,18 +54,18 @@ class FilmPairSession : public testing::Test {
 };
 
 TEST_F(FilmPairSession, IsSolvedCrossedAndKeepsTheParallelShots) {
-  const app::SessionPlan plan = planned();
+  const pipeline::SolvePlan plan = planned();
   ASSERT_EQ(plan.lit.size(), 10U);
   ASSERT_EQ(plan.parallel.size(), 10U);
   for (std::size_t k = 0; k < 10; ++k) {
     EXPECT_EQ(plan.lit[k].polariser, Polariser::kCrossed);
     EXPECT_EQ(plan.parallel[k].led, plan.lit[k].led);
   }
-  const app::LoadedSession session = loaded(plan);
-  EXPECT_DOUBLE_EQ(session.photographs.lobe_share, 0.02);
-  ASSERT_TRUE(session.photographs.parallel);
-  EXPECT_EQ(std::get<pipeline::Mosaics>(*session.photographs.parallel).count(), 10U);
-  EXPECT_THAT(session.warnings, IsEmpty());
+  const pipeline::Photographs session = loaded(plan);
+  EXPECT_DOUBLE_EQ(session.lobe_share, 0.02);
+  ASSERT_TRUE(session.parallel);
+  EXPECT_EQ(std::get<pipeline::Mosaics>(*session.parallel).count(), 10U);
+  EXPECT_THAT(session.conditions.warnings, IsEmpty());
 }
 
 TEST_F(FilmPairSession, WithoutTheParallelShotOfALedIsTheCrossedHalfAlone) {
@@ -72,10 +73,10 @@ TEST_F(FilmPairSession, WithoutTheParallelShotOfALedIsTheCrossedHalfAlone) {
     std::erase_if(session.shots,
                   [](const Shot& s) { return s.polariser == Polariser::kParallel && s.led == 4; });
   });
-  const app::SessionPlan plan = planned();
+  const pipeline::SolvePlan plan = planned();
   EXPECT_THAT(plan.parallel, IsEmpty());
   EXPECT_THAT(plan.warnings, ElementsAre(HasSubstr("there is none of LED 4")));
-  EXPECT_FALSE(loaded(plan).photographs.parallel);
+  EXPECT_FALSE(loaded(plan).parallel);
 }
 
 TEST_F(FilmPairSession, OfParallelShotsAloneIsSolvedWithTwiceTheLobe) {
@@ -84,15 +85,15 @@ TEST_F(FilmPairSession, OfParallelShotsAloneIsSolvedWithTwiceTheLobe) {
       return s.role == ShotRole::kLit && s.polariser == Polariser::kCrossed;
     });
   });
-  const app::LoadedSession session = loaded(planned());
-  EXPECT_DOUBLE_EQ(session.photographs.lobe_share, 2);
-  EXPECT_FALSE(session.photographs.parallel);
+  const pipeline::Photographs session = loaded(planned());
+  EXPECT_DOUBLE_EQ(session.lobe_share, 2);
+  EXPECT_FALSE(session.parallel);
 }
 
 // LEDs as bright as they are without films, and what films leave of their scattered light.
 TEST_F(FilmPairSession, OfARigThatWasCalibratedWithoutItsFilmsHasTheSameStrengths) {
-  const auto strength = [](const app::LoadedSession& session) {
-    return session.photographs.field->at(3, 1, 20, 10).strength;
+  const auto strength = [](const pipeline::Photographs& session) {
+    return session.field->at(3, 1, 20, 10).strength;
   };
   const double through_films = strength(loaded(planned()));
   Result<Calibration> calibration = read_calibration(folder_ / "calibration");

@@ -12,6 +12,7 @@
 
 #include "core/image_io/image_io.h"
 #include "solve/correction/left_out.h"
+#include "solve/input/load.h"
 #include "solve/input/photo_input.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
@@ -109,9 +110,9 @@ TEST_F(RealPhotographs, OfMattObjectsLeaveRobustNoBlockThatStandardPredictsBette
     app::PhotoOptions options;
     options.folder = data_ / object;
     options.transfer = app::Transfer::kLinear;
-    const Result<app::PhotoPlan> plan = app::plan_photos(options);
+    const Result<pipeline::SolvePlan> plan = app::plan_photos(options);
     ASSERT_TRUE(plan) << plan.error().message();
-    const Result<pipeline::Photographs> photographs = app::load_photos(*plan, {});
+    const Result<pipeline::Photographs> photographs = app::load_photographs(*plan, {});
     ASSERT_TRUE(photographs) << photographs.error().message();
     const auto standard = solver::standard_method(), robust = solver::robust_method();
     Result<solver::BlockChoice> choice =

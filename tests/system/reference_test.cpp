@@ -13,6 +13,7 @@
 
 #include "core/base/vec.h"
 #include "core/image_io/image_io.h"
+#include "solve/input/load.h"
 #include "solve/input/session_input.h"
 #include "solve/levels/frame.h"
 #include "solve/levels/reference.h"
@@ -65,9 +66,9 @@ class ReferenceLevel : public testing::Test {
   // The photographs, with lights said to be so many times as bright as they are and albedo without a scale.
   pipeline::Photographs photographs(double brighter = 1) const {
     auto loaded =
-        app::load_session(*app::plan_session({.folder = session_, .calibration = {}, .leds = {}}), {});
+        app::load_photographs(*app::plan_session({.folder = session_, .calibration = {}, .leds = {}}), {});
     EXPECT_TRUE(loaded) << loaded.error().message();
-    pipeline::Photographs photographs = std::move(loaded->photographs);
+    pipeline::Photographs photographs = std::move(*loaded);
     if (brighter == 1) return photographs;
     NearLights lights = std::get<NearLights>(photographs.field->lights());
     for (auto& led : lights.leds) {
@@ -232,7 +233,7 @@ TEST_F(ReferenceLevel, PublishesTheSolutionOfRobustWhereThatPredictsLeftOutLight
 
 TEST_F(ReferenceLevel, AsksForTheMemoryOfItsFrames) {
   photograph(scene_named("flat", kSize));
-  app::SessionPlan plan = *app::plan_session({.folder = session_, .calibration = {}, .leds = {}});
+  pipeline::SolvePlan plan = *app::plan_session({.folder = session_, .calibration = {}, .leds = {}});
   const std::uint64_t of_tiles = app::memory_needed(plan, 1);
   plan.extent = solver::Extent::kWholeFrame;
   EXPECT_GE(app::memory_needed(plan, 1), of_tiles + 69 * static_cast<std::uint64_t>(kSize.pixels()));

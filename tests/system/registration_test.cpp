@@ -15,6 +15,7 @@
 #include "core/base/vec.h"
 #include "core/describe/field_json.h"
 #include "solve/bands/bands.h"
+#include "solve/input/load.h"
 #include "solve/input/session_input.h"
 #include "solve/run/facts_json.h"
 #include "solve/run/solve_session.h"
@@ -35,7 +36,7 @@ class Registration : public testing::Test {
     simulate(scene, work_ / name);
     app::SessionOptions options;
     options.folder = work_ / name;
-    return std::move(app::load_session(*app::plan_session(options), {})->photographs);
+    return *app::load_photographs(*app::plan_session(options), {});
   }
   static pipeline::FarShifts need_far(const pipeline::Photographs& photographs) {
     Result<pipeline::FarShifts> far = pipeline::find_far_shifts(photographs, {});

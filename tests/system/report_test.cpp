@@ -15,11 +15,11 @@
 #include "core/describe/field_json.h"
 #include "core/rig/calibration.h"
 #include "simulator/scene/scene.h"
+#include "solve/conditions/exposure.h"
+#include "solve/input/load.h"
 #include "solve/input/session_input.h"
 #include "solve/photographs/diagnosis_pixels.h"
 #include "solve/report/report_page.h"
-#include "solve/report/solve_report.h"
-#include "solve/run/exposure_verdict.h"
 #include "solve/run/solve_session.h"
 #include "solver/diagnosis/diagnosis.h"
 #include "tests/system/samples.h"
@@ -54,11 +54,12 @@ simulator::Scene cloth(const std::string& family, const std::string& material, i
 }
 
 solver::Evidence evidence_of(const fs::path& session) {
-  const Result<app::SessionPlan> plan = app::plan_session({.folder = session, .calibration = {}, .leds = {}});
+  const Result<pipeline::SolvePlan> plan =
+      app::plan_session({.folder = session, .calibration = {}, .leds = {}});
   if (!plan) throw std::runtime_error(plan.error().message());
-  const Result<app::LoadedSession> loaded = app::load_session(*plan, {});
+  const Result<pipeline::Photographs> loaded = app::load_photographs(*plan, {});
   if (!loaded) throw std::runtime_error(loaded.error().message());
-  return pipeline::read_evidence(loaded->photographs);
+  return pipeline::read_evidence(*loaded);
 }
 
 void swap_photographs(solver::Evidence& evidence, std::size_t a, std::size_t b) {
@@ -256,7 +257,7 @@ TEST(MapSummary, FindsQuantilesOfSigmaAndOfItsPartsWhereTheNormalIsKnown) {
 TEST(Budget, NamesTheModelAndTheCalibrationWhereItHasACovariance) {
   Workspace work;
   simulate(cloth("plain", "lambert", 5), work / "c");
-  Result<app::SessionPlan> plan = app::plan_session({.folder = work / "c", .calibration = {}, .leds = {}});
+  Result<pipeline::SolvePlan> plan = app::plan_session({.folder = work / "c", .calibration = {}, .leds = {}});
   ASSERT_TRUE(plan) << plan.error().message();
   Calibration known = plan->calibration;
   known.light_covariance = ParameterCovariance{};
@@ -381,19 +382,20 @@ TEST(Verdicts, OfPhotographsSpeakOfNoScan) {
 
 TEST(ExposureVerdict, TellsOverAndDarkPhotographsFromGoodOnes) {
   const pipeline::Fullness good = {.full = 0.02, .missing = 0, .lit = 0.98, .brightest = 0.8};
-  EXPECT_FALSE(app::exposure_verdict(good, 0.001, 3, true)) << "a dark weave is noisy in a good exposure";
+  EXPECT_FALSE(pipeline::exposure_verdict(good, 0.001, 3, true))
+      << "a dark weave is noisy in a good exposure";
   const pipeline::Fullness over = {.full = 0.97, .missing = 0, .lit = 0.03, .brightest = 1};
-  const std::optional<Verdict> too_long = app::exposure_verdict(over, 0.89, 0.2, true);
+  const std::optional<Verdict> too_long = pipeline::exposure_verdict(over, 0.89, 0.2, true);
   ASSERT_TRUE(too_long);
   EXPECT_EQ(too_long->name, "OVEREXPOSED");
   EXPECT_THAT(too_long->text, HasSubstr("97 percent of the readings are full"));
   EXPECT_THAT(too_long->text, HasSubstr("89 percent of the picture has no solution"));
   const pipeline::Fullness dark = {.full = 0, .missing = 0, .lit = 0.9, .brightest = 0.026};
-  const std::optional<Verdict> too_short = app::exposure_verdict(dark, 0, 5.1, true);
+  const std::optional<Verdict> too_short = pipeline::exposure_verdict(dark, 0, 5.1, true);
   ASSERT_TRUE(too_short);
   EXPECT_EQ(too_short->name, "UNDEREXPOSED");
   EXPECT_THAT(too_short->text, HasSubstr("2.6 percent of white"));
-  EXPECT_FALSE(app::exposure_verdict(dark, 0, 0.4, true)) << "noise does no harm";
+  EXPECT_FALSE(pipeline::exposure_verdict(dark, 0, 0.4, true)) << "noise does no harm";
 }
 
 TEST(Verdicts, WarnOfShadowsFromFartherThanTheyAreLookedFor) {

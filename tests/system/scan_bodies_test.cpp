@@ -145,7 +145,7 @@ TEST_F(ScanWithABody, WhoseSettingRoundsTheShutterTimeIsSolved) {
     EXPECT_NEAR(shot.exposure_us, 1e6 / 60, 1) << shot.file << ": as the photograph does";
   app::SessionOptions options;
   options.folder = outcome->session.folder;
-  const Result<app::SessionPlan> plan = app::plan_session(options);
+  const Result<pipeline::SolvePlan> plan = app::plan_session(options);
   ASSERT_TRUE(plan) << plan.error().message();
   EXPECT_EQ(plan->lit.size(), 3u);
   EXPECT_EQ(plan->repeats.size(), 1u);

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "app/server/http/error_reply.h"
+#include "solve/input/load.h"
+#include "solve/input/session_input.h"
 #include "solve/levels/frame.h"
 #include "solve/photographs/tile_reader.h"
 #include "solver/in_double/pixel.h"
@@ -70,18 +72,18 @@ Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path
   if (options.leds.empty())
     return Error{ErrorKind::kBadData, "the solve has no readings", session.string(),
                  "it was not made from a session", "ask a solve of a session"};
-  Result<SessionPlan> plan = plan_session(options);
+  Result<SolvePlan> plan = plan_session(options);
   if (!plan) return std::move(plan).error();
   if (plan->input.calibration != input.calibration)
     return changed_since(session, "it was solved with another calibration than the session has");
   if (plan->input.shots != input.shots) return changed_since(session, "its shots are others");
 
-  Result<LoadedSession> loaded = load_session(*plan, context);
+  Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
   if (!loaded) return std::move(loaded).error();
   std::unique_ptr<PixelTable> table(new PixelTable);
   table->method_ = solve.method;
-  table->photographs_ = std::move(loaded->photographs);
-  table->whole_shots_ = facts_of(loaded->conditions).left_out;
+  table->photographs_ = std::move(*loaded);
+  table->whole_shots_ = table->photographs_.conditions.facts.left_out;
   std::vector<std::size_t> moved;
   for (const RegisteredShot& shot : solve.registration.value_or(std::vector<RegisteredShot>())) {
     const std::vector<int>& leds = table->photographs_.leds;

@@ -14,7 +14,7 @@
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/solve/solve.h"
-#include "solve/input/session_input.h"
+#include "solve/photographs/photographs.h"
 
 namespace weft::app {
 
@@ -24,7 +24,7 @@ class PixelTable {
  public:
   /// Reads the session as the solve did: the same shots, the same calibration, corrected alike, without the
   /// shots that the solve left out. kBadData where the session has changed since, or its calibration is
-  /// another one than the solve names; errors of plan_session() and load_session().
+  /// another one than the solve names; errors of plan_session() and load_photographs().
   static Result<std::unique_ptr<PixelTable>> read(const std::filesystem::path& session,
                                                   const SolveFacts& solve, const JobContext& context);
 

@@ -5,11 +5,23 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "core/solve/solve.h"
 #include "core/solve/verdict.h"
-#include "solve/conditions/fullness.h"
+#include "solve/photographs/photographs.h"
 
-namespace weft::app {
+namespace weft::pipeline {
+
+/// How full photographs are: shares of the readings of all lights.
+struct Fullness {
+  double full = 0;     ///< saturated
+  double missing = 0;  ///< no readings at all, as outside a mask
+  double lit = 0;      ///< above 0
+  /// Share of the way from black to white that one photosite in ten thousand exceeds, in the brightest frame
+  /// or bracket. None of developed photographs, whose white nobody knows.
+  std::optional<double> brightest = {};
+};
+
+/// From every 16th pair of rows of each photograph.
+Fullness fullness_of(const Photographs& photographs);
 
 /// Photographs are called over from this share of readings that are full, or of pixels that have no solution
 /// for it.
@@ -22,11 +34,10 @@ inline constexpr double kDarkNoise_deg = 1;
 
 /// OVEREXPOSED or UNDEREXPOSED, if they are. `lost` is the share of pixels without a solution that have a
 /// full reading, `noise_deg` the median angle that noise turns the normals by.
-std::optional<Verdict> exposure_verdict(const pipeline::Fullness& fullness, double lost, double noise_deg,
+std::optional<Verdict> exposure_verdict(const Fullness& fullness, double lost, double noise_deg,
                                         bool of_session);
 
 /// What a solve without any solved pixel ends with.
-Error nothing_solved(const std::string& where, Size size, const pipeline::Fullness& fullness,
-                     bool of_session);
+Error nothing_solved(const std::string& where, Size size, const Fullness& fullness, bool of_session);
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solve/conditions/fullness.h"
+#include "solve/conditions/exposure.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/percent.h"
 #include "core/base/statistics.h"
 
 namespace weft::pipeline {
@@ -39,6 +42,16 @@ double brightest_of(const Mosaics& mosaics) {
   return brightest;
 }
 
+std::string remedy_of_over(bool of_session) {
+  return of_session ? "scan again with a metered exposure" : "photograph again with a shorter exposure";
+}
+
+std::string remedy_of_dark(bool of_session) {
+  return of_session
+             ? "scan again with a metered exposure, or with more light where the camera has no longer one"
+             : "photograph again with a longer exposure or more light";
+}
+
 }  // namespace
 
 Fullness fullness_of(const Photographs& photographs) {
@@ -67,6 +80,40 @@ Fullness fullness_of(const Photographs& photographs) {
   Fullness result = {share_of(full), share_of(missing), share_of(lit)};
   if (const Mosaics* mosaics = photographs.mosaics()) result.brightest = brightest_of(*mosaics);
   return result;
+}
+
+std::optional<Verdict> exposure_verdict(const Fullness& fullness, double lost, double noise_deg,
+                                        bool of_session) {
+  if (fullness.full > kMostFull || lost > kMostLost) {
+    std::string text = fmt::format("The photographs are over: {} percent of the readings are full",
+                                   percent_words(fullness.full));
+    if (lost > 0)
+      text += fmt::format(", and {} percent of the picture has no solution for it", percent_words(lost));
+    return Verdict{"OVEREXPOSED", std::move(text), remedy_of_over(of_session)};
+  }
+  if (fullness.brightest && *fullness.brightest < kDarkBelow && noise_deg > kDarkNoise_deg) {
+    return Verdict{
+        "UNDEREXPOSED",
+        fmt::format("The photographs are dark: their brightest places come to {} percent of white, and "
+                    "noise turns the normals by {:.1f}° (median)",
+                    percent_words(*fullness.brightest), noise_deg),
+        remedy_of_dark(of_session)};
+  }
+  return std::nullopt;
+}
+
+Error nothing_solved(const std::string& where, Size size, const Fullness& fullness, bool of_session) {
+  const double dark = 1 - fullness.full - fullness.missing - fullness.lit;
+  const double most = std::max({fullness.full, fullness.missing, dark});
+  std::string remedy = "see that readings and mask are of this cloth";
+  if (most == dark) remedy = remedy_of_dark(of_session);
+  if (most == fullness.full) remedy = remedy_of_over(of_session);
+  return {ErrorKind::kBadData, "nothing was solved", where,
+          fmt::format("none of {} pixels has three readings that can be used: {} percent of the readings are "
+                      "full, {} percent dark and {} percent missing",
+                      size.pixels(), percent_words(fullness.full), percent_words(dark),
+                      percent_words(fullness.missing)),
+          std::move(remedy)};
 }
 
 }  // namespace weft::pipeline

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/conditions/conditions.h"
+
+#include <array>
+
+#include "solve/conditions/brackets.h"
+#include "solve/conditions/drift.h"
+#include "solve/conditions/led_gains.h"
+#include "solve/conditions/photosites.h"
+#include "solve/conditions/pose.h"
+#include "solve/conditions/useless_lights.h"
+#include "solve/conditions/veil.h"
+
+namespace weft::pipeline {
+namespace {
+
+// In the order in which they must be met: each is found in photographs that those before it have put right.
+constexpr std::array kConditions = {tell_veil,    mend_photosites, add_brackets, drop_useless_lights,
+                                    follow_drift, lay_level,       follow_cloth};
+
+}  // namespace
+
+Result<void> meet_conditions(const Exposures& exposures) {
+  for (const auto meet : kConditions) {
+    if (Result<void> met = meet(exposures); !met) return met;
+  }
+  return {};
+}
+
+}  // namespace weft::pipeline

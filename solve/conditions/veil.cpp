@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/conditions/veil.h"
+
+namespace weft::pipeline {
+
+Result<void> tell_veil(const Exposures& exposures) {
+  const Mosaics* mosaics = exposures.photographs.mosaics();
+  if (mosaics != nullptr && mosaics->response.veil)
+    exposures.photographs.conditions.facts.veil = mosaics->response.veil->share;
+  return {};
+}
+
+}  // namespace weft::pipeline

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/base/result.h"
+#include "solve/conditions/conditions.h"
+
+namespace weft::pipeline {
+
+/// Says which share of the light is a veil that the lens throws over the frame. Readings come without it
+/// (Mosaics::veils).
+Result<void> tell_veil(const Exposures& exposures);
+
+}  // namespace weft::pipeline

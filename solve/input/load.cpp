@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/input/load.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "capture/frames/session_frames.h"
+#include "core/base/files.h"
+#include "core/base/parallel.h"
+#include "core/image_io/image_io.h"
+#include "core/image_io/linear_image.h"
+#include "solve/conditions/conditions.h"
+#include "solve/gloss/sample_gloss.h"
+#include "solve/input/photo_mask.h"
+#include "solve/levels/reference.h"
+#include "solve/photographs/plane_weights.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using pipeline::FramesBeside;
+using pipeline::Photographs;
+using pipeline::SolvePlan;
+
+// Frames of one body have one set of levels.
+Result<void> check_levels(const RawFrame& frame, const RawFrame& first, const fs::path& file) {
+  if (frame.black == first.black && frame.white == first.white) return {};
+  return Error{
+      ErrorKind::kBadData, "frame does not belong to its session", file.string(),
+      fmt::format("its black levels are {} {} {} {} and its white level is {}, the first frame's are {} {} "
+                  "{} {} and {}",
+                  frame.black[0][0], frame.black[0][1], frame.black[1][0], frame.black[1][1], frame.white,
+                  first.black[0][0], first.black[0][1], first.black[1][0], first.black[1][1], first.white),
+      "scan the cloth again with fixed camera settings"};
+}
+
+// Moves the first `count` of `frames` away.
+template <typename Frame>
+std::vector<Frame> take(std::vector<Frame>& frames, std::size_t count) {
+  const auto end = frames.begin() + static_cast<std::ptrdiff_t>(count);
+  std::vector<Frame> taken(std::make_move_iterator(frames.begin()), std::make_move_iterator(end));
+  frames.erase(frames.begin(), end);
+  return taken;
+}
+
+template <typename Frame>
+Result<std::vector<Frame>> read_frames(const std::vector<Shot>& shots, const JobContext& context,
+                                       const std::function<Result<Frame>(const Shot&)>& read) {
+  std::vector<Frame> frames(shots.size());
+  const auto read_one = [&](std::size_t i) -> Result<void> {
+    Result<Frame> frame = read(shots[i]);
+    if (!frame) return std::move(frame).error();
+    frames[i] = std::move(*frame);
+    return {};
+  };
+  if (Result<void> ok = for_each_frame(shots.size(), context, read_one); !ok) return std::move(ok).error();
+  return frames;
+}
+
+Result<std::vector<Photosite>> photosites_named_by(const std::filesystem::path& hot_picture, Size size) {
+  const Result<LoadedImage> image = read_image(hot_picture);
+  if (!image) return image.error();
+  const Size found = image->planes.size();
+  if (found != size) {
+    return Error{ErrorKind::kBadData, "hot.png differs in size from the frames", hot_picture.string(),
+                 fmt::format("it has {} x {} pixels, the frames {} x {}", found.width, found.height,
+                             size.width, size.height),
+                 "name the calibration of this camera with --calibration"};
+  }
+  std::vector<Photosite> named;
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      if (image->planes(x, y) > 0) named.push_back({y, x});
+    }
+  }
+  return named;
+}
+
+// Counts of raw frames.
+Result<void> read_mosaics(const SolvePlan& plan, const JobContext& context, Photographs& photographs,
+                          FramesBeside& beside) {
+  const std::vector<Shot> shots = plan.frames();
+  Result<std::vector<RawFrame>> frames = read_frames<RawFrame>(
+      shots, context, [&](const Shot& shot) { return read_raw_shot(plan.session, shot, plan.size); });
+  if (!frames) return std::move(frames).error();
+  for (std::size_t i = 1; i < frames->size(); ++i) {
+    if (Result<void> ok = check_levels((*frames)[i], frames->front(), plan.session.path_of(shots[i])); !ok)
+      return ok;
+  }
+  std::vector<RawFrame> lit = take(*frames, plan.lit.size());
+  std::optional<RawFrame> dark;
+  if (plan.dark) dark = std::move(take(*frames, 1).front());
+  const Shot& first = plan.lit.front();
+  pipeline::Mosaics mosaics(std::move(lit), std::move(dark), *plan.calibration.response,
+                            {first.exposure_us, first.iso});
+  beside.repeats = mosaics.alike(take(*frames, plan.repeats.size()));
+  if (!plan.parallel.empty()) photographs.parallel = mosaics.alike(take(*frames, plan.parallel.size()));
+  beside.brackets = std::move(*frames);
+  photographs.frames = std::move(mosaics);
+  if (!plan.calibration.hot_picture) return {};
+  Result<std::vector<Photosite>> known = photosites_named_by(*plan.calibration.hot_picture, plan.size);
+  if (!known) return std::move(known).error();
+  beside.known_bad = std::move(*known);
+  return {};
+}
+
+void hide_outside(const Image<std::uint8_t>& mask, Image<float>& rgb) {
+  for (int y = 0; y < rgb.height(); ++y) {
+    for (int x = 0; x < rgb.width(); ++x) {
+      if (mask(x, y) != 0) continue;
+      for (int c = 0; c < 3; ++c) rgb(x, y, c) = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+}
+
+// Readings of photographs that somebody developed: of a session over the light that its exposure gathers.
+Result<void> read_developed(const SolvePlan& plan, const JobContext& context, Photographs& photographs,
+                            FramesBeside& beside) {
+  std::optional<Image<std::uint8_t>> mask;
+  if (!plan.mask.empty()) {
+    Result<Image<std::uint8_t>> read = read_mask(plan.mask, plan.size);
+    if (!read) return std::move(read).error();
+    mask = std::move(*read);
+  }
+  const auto read_one = [&](const Shot& shot) -> Result<Image<float>> {
+    if (plan.is_of_rig) return read_developed_shot(plan.session, shot);
+    Result<Image<float>> image = read_linear_image(plan.session.path_of(shot), plan.transfer, plan.clipped);
+    if (image && mask) hide_outside(*mask, *image);
+    return image;
+  };
+  Result<std::vector<Image<float>>> frames = read_frames<Image<float>>(plan.frames(), context, read_one);
+  if (!frames) return std::move(frames).error();
+  std::vector<Image<float>> lit = take(*frames, plan.lit.size());
+  const std::vector<Image<float>> dark = take(*frames, plan.dark ? 1 : 0);
+  const Shot& first = plan.lit.front();
+  for (auto* list : {&lit, &*frames}) {
+    for (Image<float>& image : *list) {
+      if (!dark.empty()) subtract(image, dark.front());
+      if (plan.is_of_rig) scale(image, 1 / (first.exposure_us * 1e-6 * first.iso / 100));
+    }
+  }
+  photographs.frames = pipeline::Developed{std::move(lit)};
+  beside.repeats = pipeline::Developed{take(*frames, plan.repeats.size())};
+  if (!plan.parallel.empty()) photographs.parallel = pipeline::Developed{std::move(*frames)};
+  return {};
+}
+
+// Of what the surface mirrors, over the share of what it scatters.
+double lobe_share_of(Polariser polariser, const Films& films) {
+  switch (polariser) {
+    case Polariser::kNone:
+      break;
+    case Polariser::kParallel:
+      return solver::kParallelLobeShare;
+    case Polariser::kCrossed:
+      return solver::kParallelLobeShare * films.leak;
+  }
+  return 1;
+}
+
+// Before an hour of work.
+Result<void> check_memory(const SolvePlan& plan, int threads) {
+  const std::uint64_t needed = memory_needed(plan, threads);
+  const std::uint64_t free = available_memory_bytes();
+  if (free == 0 || needed <= free) return {};
+  const bool of_rig = plan.is_of_rig;
+  return Error{ErrorKind::kTryAgain, "not enough memory",
+               of_rig ? plan.where : plan.session.path_of(plan.lit.front()).string(),
+               fmt::format("{} MB are needed, {} MB are free", needed >> 20, free >> 20),
+               of_rig ? "close other programs, or solve on a larger machine"
+                      : "use fewer or smaller photographs, or a larger machine"};
+}
+
+// The lights of the shots that are solved.
+Result<LightField> field_of(const SolvePlan& plan) {
+  Result<Lights> lights = select_lights(*plan.calibration.lights, plan.numbers());
+  if (!lights) return std::move(lights).error();
+  const double scattered = plan.session.films.scattered;
+  if (plan.lit.front().polariser != Polariser::kNone && scattered != 1)
+    lights = brightened(std::move(*lights), std::vector<double>(plan.lit.size(), scattered));
+  return LightField::make(std::move(*lights), plan.calibration.camera, plan.size,
+                          plan.session.cloth_height_mm);
+}
+
+// All but the frames.
+Result<Photographs> described_by(const SolvePlan& plan) {
+  Photographs photographs;
+  photographs.size = plan.size;
+  photographs.lobe_share = lobe_share_of(plan.lit.front().polariser, plan.session.films);
+  photographs.albedo_scale = plan.calibration.subject.albedo_scale;
+  if (plan.is_of_rig) photographs.leds = plan.numbers();
+  Result<LightField> field = field_of(plan);
+  if (!field) return std::move(field).error();
+  photographs.field = std::move(*field);
+  photographs.camera = plan.calibration.camera;
+  photographs.spread = plan.calibration.spread;
+  photographs.lateral = plan.calibration.lateral;
+  photographs.light_covariance = plan.calibration.light_covariance;
+  photographs.color = plan.calibration.color;
+  photographs.conditions.warnings = plan.warnings;
+  return photographs;
+}
+
+Result<Photographs> load_pose(const SolvePlan& plan, const JobContext& context) {
+  const int threads = std::min(resolved_threads(context.threads), static_cast<int>(plan.frames().size()));
+  if (Result<void> room = check_memory(plan, threads); !room) return std::move(room).error();
+  Result<Photographs> photographs = described_by(plan);
+  if (!photographs) return photographs;
+  FramesBeside beside;
+  const auto read = plan.raw ? read_mosaics : read_developed;
+  if (Result<void> ok = read(plan, context, *photographs, beside); !ok) return std::move(ok).error();
+  if (Result<void> met = pipeline::meet_conditions({plan, beside, *photographs, context}); !met)
+    return std::move(met).error();
+  // Figures were published of luminance.
+  if (plan.clipped == Clipped::kMark)
+    photographs->plane_weights = pipeline::measure_plane_weights(*photographs);
+  return photographs;
+}
+
+// What the other pose says of the lobe, and is warned of in it.
+Result<pipeline::GlossSamples> sample_pose(const SolvePlan& plan, const JobContext& context,
+                                           std::vector<std::string>& warnings) {
+  const Result<Photographs> photographs = load_pose(plan, context);
+  if (!photographs) return photographs.error();
+  for (const std::string& warning : photographs->conditions.warnings)
+    warnings.push_back("second pose: " + warning);
+  const std::unique_ptr<solver::Method> robust = solver::robust_method();
+  return sample_gloss(*photographs, *robust, nullptr, context.threads);
+}
+
+}  // namespace
+
+std::uint64_t memory_needed(const SolvePlan& plan, int threads) {
+  const auto pixels = static_cast<std::uint64_t>(plan.size.pixels());
+  const std::size_t frames = plan.frames().size();
+  if (!plan.is_of_rig) return pixels * 12 * (frames + 4);
+  const std::size_t decoding = std::min(static_cast<std::size_t>(threads), frames);
+  const std::uint64_t bytes_a_pixel = plan.raw ? 2 : 12;
+  const std::uint64_t of_level = plan.extent == solver::Extent::kWholeFrame
+                                     ? pixels * pipeline::reference_bytes_a_pixel(plan.raw ? 1 : 3)
+                                     : 0;
+  return pixels * bytes_a_pixel * (frames + decoding) + of_level +
+         static_cast<std::uint64_t>(plan.size.width) * 128 * 150 + (std::uint64_t{64} << 20);
+}
+
+Result<Photographs> load_photographs(const SolvePlan& plan, const JobContext& context) {
+  if (!plan.second_pose) return load_pose(plan, context);
+  std::vector<std::string> warnings;
+  Result<pipeline::GlossSamples> samples = sample_pose(*plan.second_pose, context, warnings);
+  if (!samples) return std::move(samples).error();
+  Result<Photographs> photographs = load_pose(plan, context);
+  if (!photographs) return photographs;
+  photographs->second_pose = std::move(*samples);
+  for (std::string& warning : warnings) photographs->conditions.warnings.push_back(std::move(warning));
+  return photographs;
+}
+
+}  // namespace weft::app
