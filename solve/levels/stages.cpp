@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solve/bands/deblur.h"
-#include "solve/bands/lateral.h"
+#include "solve/bands/realign.h"
 #include "solve/correction/left_out.h"
 #include "solve/gloss/gloss.h"
 
