@@ -2,12 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
 #include "solve/conditions/brackets.h"
+#include "solve/conditions/conditions.h"
 #include "solve/conditions/drift.h"
 #include "solve/conditions/photosites.h"
 #include "solve/conditions/useless_lights.h"
@@ -225,6 +228,70 @@ TEST(Drift, IsAskedOfRepeatsWhereNoPatchCanBeRead) {
   const Drift drift = find_drift(photographs, evidence, 1);
   EXPECT_EQ(drift.unread_light, 0U);
   EXPECT_EQ(drift.source, Drift::Source::kRepeats);
+}
+
+// All lights of the photographs, lit once each.
+SolvePlan plan_of(const Photographs& photographs) {
+  SolvePlan plan;
+  for (std::size_t k = 0; k < photographs.count(); ++k) {
+    Shot shot;
+    shot.index = static_cast<int>(k);
+    shot.led = shot.index + 1;
+    plan.lit.push_back(shot);
+  }
+  return plan;
+}
+
+TEST(Conditions, ArePutRightAndToldInThePhotographs) {
+  Photographs photographs = numbered(mosaics(kShotSize, {}));
+  photographs.mosaics()->frames[2] = frame_of(kShotSize, [](int, int) { return 1.0; });
+  brighten(photographs, 8, 0.005);
+  shade(photographs, 7, 0.4);
+  SolvePlan plan = plan_of(photographs);
+  plan.calibration.patches = four_patches();
+  FramesBeside beside;
+  beside.repeats = photographs.mosaics()->alike({});
+  beside.known_bad = {{10, 20}};
+  const JobContext context = {.threads = 1};
+  const Result<void> met = meet_conditions({plan, beside, photographs, context});
+  ASSERT_TRUE(met) << met.error().message();
+
+  EXPECT_THAT(photographs.leds, ElementsAre(1, 2, 4, 5, 6, 7, 8, 10));
+  EXPECT_THAT(photographs.mosaics()->replaced, ElementsAre(Photosite{10, 20}));
+  const auto& [facts, warnings] = photographs.conditions;
+  EXPECT_EQ(facts.hot_photosites, 1);
+  EXPECT_FALSE(facts.veil);
+  ASSERT_EQ(facts.left_out.size(), 2U);
+  EXPECT_EQ(facts.left_out[0].why, "saturated");
+  EXPECT_EQ(facts.left_out[1].why, "not lit");
+  ASSERT_EQ(facts.drift.size(), 8U);
+  EXPECT_EQ(facts.drift[6].led, 8);
+  EXPECT_EQ(facts.drift[6].from, "patches");
+  EXPECT_FALSE(facts.cloth_gains) << "patches have told";
+  EXPECT_THAT(
+      warnings,
+      ElementsAre("LED 3 saturated 100 percent of the frame; it was left out",
+                  "LED 9 did not light the cloth: its frame looks like the dark shot; it was left out",
+                  testing::HasSubstr("white patch 3 gives 0.4 times the light that most patches give under "
+                                     "LED 8")));
+}
+
+TEST(Conditions, OfPhotographsWithoutARigLeaveNoLightOut) {
+  Photographs photographs = developed(kShotSize, {});
+  for (int c = 0; c < 3; ++c) {
+    const View<float> plane = std::get<Developed>(photographs.frames).rgb[2].plane(c);
+    for (int y = 0; y < kShotSize.height; ++y)
+      std::fill_n(plane.row(y), kShotSize.width, std::numeric_limits<float>::infinity());
+  }
+  ASSERT_EQ(find_useless_lights(photographs).size(), 1U);
+  SolvePlan plan = plan_of(photographs);
+  plan.is_of_rig = false;
+  FramesBeside beside;
+  const JobContext context = {.threads = 1};
+  ASSERT_TRUE(meet_conditions({plan, beside, photographs, context}));
+  EXPECT_EQ(photographs.count(), 10U);
+  EXPECT_THAT(photographs.conditions.warnings, testing::IsEmpty());
+  EXPECT_TRUE(photographs.conditions.facts.left_out.empty());
 }
 
 }  // namespace
