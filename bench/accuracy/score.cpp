@@ -326,11 +326,12 @@ SolvePatch by_level(const solver::MethodName& level) {
 }
 
 SolvePatch by_stages(std::vector<pipeline::Stage> stages) {
-  return [stages = std::move(stages)](const ClothPatch& patch, int threads, SolvedMaps& maps) -> Result<void> {
-    const auto solved = solve_by(stages, patch.photographs, pipeline::kSolveTile, on_threads(threads),
-                                 keeper_of(patch.photographs.planes(), maps));
-    return solved ? Result<void>() : solved.error();
-  };
+  return
+      [stages = std::move(stages)](const ClothPatch& patch, int threads, SolvedMaps& maps) -> Result<void> {
+        const auto solved = solve_by(stages, patch.photographs, pipeline::kSolveTile, on_threads(threads),
+                                     keeper_of(patch.photographs.planes(), maps));
+        return solved ? Result<void>() : solved.error();
+      };
 }
 
 std::vector<std::string> level_names() {
