@@ -4,6 +4,7 @@ import {effect, signal} from '@preact/signals';
 import {answer, api, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
 import {rig} from '../../state/rig';
+import {newRequestId} from '../jobs/jobs';
 import {withDevicesFree} from './devices';
 import {holdOf} from './hold';
 import {scanRequest} from './proposal';
@@ -14,14 +15,9 @@ export type Session = Schemas['Session'];
 export const scanned = signal<Session | null>(null);
 export const showsScanned = signal(false);
 
-/** Plain http has no randomUUID. */
-function requestId(): string {
-  return [...crypto.getRandomValues(new Uint32Array(4))].map((word) => word.toString(36)).join('');
-}
-
 /** One press is one scan, however long the daemon takes to say that it began. */
 export async function beginScan(reason: string): Promise<void> {
-  const request = {...scanRequest.value, request_id: requestId()};
+  const request = {...scanRequest.value, request_id: newRequestId()};
   const body = reason === '' ? request : {...request, accept_moved: reason};
   await withDevicesFree(() => answer(api.POST('/api/v1/scan', {body})));
 }

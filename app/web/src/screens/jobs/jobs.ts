@@ -47,7 +47,7 @@ export function useJobs(): void {
 }
 
 /** Works on plain http too, where a browser has no randomUUID. */
-function newRequestId(): string {
+export function newRequestId(): string {
   const bytes = crypto.getRandomValues(new Uint8Array(12));
   return `page-${[...bytes].map((byte) => byte.toString(16).padStart(2, '0')).join('')}`;
 }
