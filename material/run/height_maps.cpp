@@ -42,7 +42,7 @@ double usual_sigma(const Surface& surface) {
 }
 
 // The slopes as normals, which solvers of heights read; pixels without a solution have no weight.
-solver::NormalRows normals_of(const Surface& surface, bool weighs_by_sigma) {
+solver::NormalRows normal_rows_of(const Surface& surface, bool weighs_by_sigma) {
   const double usual = weighs_by_sigma ? usual_sigma(surface) : 1;
   const auto read = [&surface, weighs_by_sigma, usual](int y0, const std::array<View<float>, 3>& normal,
                                                        View<std::uint8_t> weight) -> Result<void> {
@@ -108,7 +108,7 @@ Result<void> find_height(MapWork& work) {
   options.height.mm_per_pixel = work.surface.mm_per_pixel;
   options.height.threads = work.context.threads;
   Result<solver::TiledHeight> height =
-      solver::tiled_height(normals_of(work.surface, work.options.weighs_by_sigma), options);
+      solver::tiled_height(normal_rows_of(work.surface, work.options.weighs_by_sigma), options);
   if (!height) return std::move(height).error();
   work.height_mm = std::move(height->height_mm);
   return {};
