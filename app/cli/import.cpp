@@ -87,7 +87,7 @@ void print_import(const ImportProposal& plan) {
     if (each.refusal) {
       print(fmt::format("{}: refused. {}", name, each.refusal->message()));
     } else {
-      print(fmt::format("{}: {} photographs under distant lights of {}{}", name, each.photos.files.size(),
+      print(fmt::format("{}: {} photographs under distant lights of {}{}", name, each.photos.lit.size(),
                         each.source.string(), each.state == ImportState::kThere ? ", is there already" : ""));
     }
   }
