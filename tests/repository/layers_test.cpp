@@ -395,7 +395,8 @@ TEST(Layers, AreTheTableOfTheArchitecturePage) {
     for (const std::string_view line : lines_of(file.text)) {
       if (!line.starts_with("| `")) continue;
       const std::size_t last = line.rfind('|', line.size() - 2);
-      table[quoted_words(line.substr(0, line.find('|', 1)))] = quoted_words(line.substr(last));
+      const std::vector<std::string> folders = quoted_words(line.substr(0, line.find('|', 1)));
+      if (folders.front().ends_with('/')) table[folders] = quoted_words(line.substr(last));
     }
   }
   std::map<std::vector<std::string>, std::vector<std::string>> layers;
