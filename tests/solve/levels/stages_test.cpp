@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/base/vec.h"
 #include "tests/solve/cloth.h"
 
 namespace weft::pipeline {
@@ -33,10 +35,14 @@ std::vector<std::string> names_of(const std::vector<Stage>& stages) {
   return names;
 }
 
-Photographs glossy_wave() {
-  return mosaics(kGlossyFrame, {.normal = wave,
-                                .albedo = {0.3, 0.3, 0.3},
-                                .lobe = {.family = solver::LobeFamily::kGgx, .alpha = 0.35, .f0 = 0.05}});
+// Dark and glossy, 20 degrees steep to both sides.
+Photographs glossy_dimples() {
+  const auto dimpled = [](int x, int y) {
+    return normalized({0.26 * std::sin(2 * kPi * x / 37), 0.26 * std::sin(2 * kPi * y / 23), 1});
+  };
+  return mosaics(kGlossyFrame, {.normal = dimpled,
+                                .albedo = {0.1, 0.08, 0.06},
+                                .lobe = {.family = solver::LobeFamily::kGgx, .alpha = 0.25, .f0 = 0.05}});
 }
 
 struct SolvedFrameMaps {
@@ -86,7 +92,7 @@ TEST(Stages, WithoutThoseOfALevelAreThoseOfTheLevelBelow) {
 }
 
 TEST(Stages, OfRobustLeftOutLeaveTheBytesOfStandard) {
-  const Photographs photographs = glossy_wave();
+  const Photographs photographs = glossy_dimples();
   const SolvedFrameMaps standard = solved_by(level_without(Level::kStandard, {}), photographs);
   const SolvedFrameMaps robust = solved_by(level_without(Level::kRobust, {}), photographs);
   const SolvedFrameMaps left = solved_by(level_without(Level::kRobust, {"blocks", "lobe"}), photographs);
@@ -97,7 +103,7 @@ TEST(Stages, OfRobustLeftOutLeaveTheBytesOfStandard) {
 }
 
 TEST(Stages, EachCanBeLeftOutByItself) {
-  const Photographs photographs = glossy_wave();
+  const Photographs photographs = glossy_dimples();
   const SolvedFrameMaps robust = solved_by(level_without(Level::kRobust, {}), photographs);
   ASSERT_TRUE(robust.facts.gloss->is_measured());
   const SolvedFrameMaps matt = solved_by(level_without(Level::kRobust, {"lobe"}), photographs);
@@ -110,7 +116,7 @@ TEST(Stages, EachCanBeLeftOutByItself) {
 }
 
 TEST(Stages, OfReferenceWithoutAReliefLeaveTheBytesOfRobust) {
-  const Photographs photographs = glossy_wave();
+  const Photographs photographs = glossy_dimples();
   const std::vector<Stage> forced = level_without(Level::kReference, {"gates", "choice", "comparison"});
   const SolvedFrameMaps robust = solved_by(level_without(Level::kRobust, {}), photographs);
   const SolvedFrameMaps corrected = solved_by(forced, photographs);
@@ -123,7 +129,7 @@ TEST(Stages, OfReferenceWithoutAReliefLeaveTheBytesOfRobust) {
 }
 
 TEST(Stages, TellWhatTheyCostByTheirNames) {
-  const Photographs photographs = glossy_wave();
+  const Photographs photographs = glossy_dimples();
   const SolvedFrameMaps robust = solved_by(level_without(Level::kRobust, {}), photographs);
   std::vector<std::string> names;
   double seconds = 0;
@@ -137,7 +143,7 @@ TEST(Stages, TellWhatTheyCostByTheirNames) {
 }
 
 TEST(Stages, CanBePutAnywhere) {
-  const Photographs photographs = glossy_wave();
+  const Photographs photographs = glossy_dimples();
   std::vector<Stage> stages = level_without(Level::kStandard, {});
   int bands = 0;
   stages.insert(stages.begin() + 1, {"count", "counts bands on their way out", {}, [&](Solving& s) {
