@@ -440,8 +440,8 @@ report::Plot curves_plot(const AccuracyFigures& figures) {
 
 std::string accuracy_markdown(const AccuracyFigures& figures) {
   std::string page =
-      "The numbers behind plots and tables are in [accuracy.json](pictures/accuracy.json).\n\n![mean error "
-      "against time](pictures/accuracy.svg)\n\n";
+      "The numbers behind plots and tables are in [accuracy.json](../pictures/accuracy.json).\n\n"
+      "![mean error against time](../pictures/accuracy.svg)\n\n";
   const auto add = [&](const char* heading, const char* part, const std::string& table) {
     if (!figures.measured_by.contains(part)) return;
     page += fmt::format("## {}\n\nBy {}.\n\n{}", heading, figures.measured_by.at(part), table);
@@ -483,7 +483,7 @@ std::string accuracy_markdown(const AccuracyFigures& figures) {
                                    {"albedo_mean_rel", "albedo error"},
                                    {"ns_per_pixel", "ns a pixel"}}));
   add("Resolution, arithmetic, directions and rounds", "curves",
-      "![error against time by setting](pictures/curves.svg)\n\n" +
+      "![error against time by setting](../pictures/curves.svg)\n\n" +
           columns_table(figures.curves, {{"curve", "what"},
                                          {"setting", "setting"},
                                          {"mean_deg", "mean, degrees"},
@@ -507,11 +507,11 @@ std::string accuracy_markdown(const AccuracyFigures& figures) {
 
 namespace {
 
-Result<std::string> with_part(const std::string& page, std::string_view begin, std::string_view end,
-                              const std::string& part) {
+Result<std::string> with_part(const std::string& page, const char* name, std::string_view begin,
+                              std::string_view end, const std::string& part) {
   const std::size_t from = page.find(begin), to = page.find(end);
   if (from == std::string::npos || to == std::string::npos || to < from) {
-    return Error{ErrorKind::kBadData, "page has no place for figures", "accuracy.md",
+    return Error{ErrorKind::kBadData, "page has no place for figures", name,
                  fmt::format("it lacks the lines \"{}\" and \"{}\"", begin, end), "add them, in this order"};
   }
   return page.substr(0, from + begin.size()) + "\n\n" + part + "\n" + page.substr(to);
@@ -519,18 +519,24 @@ Result<std::string> with_part(const std::string& page, std::string_view begin, s
 
 }  // namespace
 
+Result<std::string> with_summary(const std::string& page, const AccuracyFigures& figures) {
+  return with_part(page, kSummaryPage, kSummaryBegin, kSummaryEnd, summary_markdown(figures));
+}
+
 Result<std::string> with_figures(const std::string& page, const AccuracyFigures& figures) {
-  const Result<std::string> begun = with_part(page, kSummaryBegin, kSummaryEnd, summary_markdown(figures));
-  if (!begun) return begun.error();
-  return with_part(*begun, kFiguresBegin, kFiguresEnd, accuracy_markdown(figures));
+  return with_part(page, kFiguresPage, kFiguresBegin, kFiguresEnd, accuracy_markdown(figures));
 }
 
 Result<void> write_accuracy_docs(const std::filesystem::path& folder, const AccuracyFigures& figures) {
-  const std::filesystem::path file = folder / "accuracy.md", pictures = folder / "pictures";
-  const Result<std::string> page = read_text(file);
-  if (!page) return page.error();
-  const Result<std::string> renewed = with_figures(*page, figures);
-  if (!renewed) return renewed.error();
+  const std::filesystem::path pictures = folder / "pictures";
+  const Result<std::string> manual = read_text(folder / kSummaryPage);
+  if (!manual) return manual.error();
+  const Result<std::string> measured = read_text(folder / kFiguresPage);
+  if (!measured) return measured.error();
+  const Result<std::string> summary = with_summary(*manual, figures);
+  if (!summary) return summary.error();
+  const Result<std::string> tables = with_figures(*measured, figures);
+  if (!tables) return tables.error();
   if (Result<void> made = make_writable_folder(pictures); !made) return made;
   const std::pair<const char*, report::Plot> kPlots[] = {{"levels.svg", levels_plot(figures)},
                                                          {"accuracy.svg", accuracy_plot(figures)},
@@ -539,7 +545,8 @@ Result<void> write_accuracy_docs(const std::filesystem::path& folder, const Accu
     if (Result<void> ok = write_file(pictures / name, plot_svg(plot)); !ok) return ok;
   }
   if (Result<void> ok = write_file(pictures / kFiguresFile, json_of(figures).dump(1) + "\n"); !ok) return ok;
-  return write_file(file, *renewed);
+  if (Result<void> ok = write_file(folder / kSummaryPage, *summary); !ok) return ok;
+  return write_file(folder / kFiguresPage, *tables);
 }
 
 Result<AccuracyFigures> read_accuracy_docs(const std::filesystem::path& folder) {

@@ -13,7 +13,7 @@
 
 namespace weft::bench {
 
-/// All that docs/accuracy.md shows, as the benchmarks give it.
+/// All that the two pages on accuracy show, as the benchmarks give it.
 struct AccuracyFigures {
   std::map<std::string, std::string> measured_by;  ///< each part that is there: version, processor, threads
   std::string listing;                             ///< what `weft solve --explain` prints
@@ -42,19 +42,24 @@ report::Plot accuracy_plot(const AccuracyFigures& figures);
 /// The same of the settings of accuracy_curves().
 report::Plot curves_plot(const AccuracyFigures& figures);
 
-/// The page's generated parts in Markdown: what it begins with, and the tables that it ends with.
+/// The pages, below the folder of documentation: the manual, with a summary, and the one with every table.
+inline constexpr const char* kSummaryPage = "accuracy.md";
+inline constexpr const char* kFiguresPage = "measured/accuracy.md";
+
+/// Their generated parts in Markdown.
 std::string summary_markdown(const AccuracyFigures& figures);
 std::string accuracy_markdown(const AccuracyFigures& figures);
 
-/// `page` with what stands between the two pairs of marks replaced. kBadData where marks are not there.
+/// `page` with what stands between its marks replaced. kBadData where marks are not there.
 inline constexpr const char* kSummaryBegin = "<!-- summary: made by weft bench accuracy --docs -->";
 inline constexpr const char* kSummaryEnd = "<!-- end of summary -->";
 inline constexpr const char* kFiguresBegin = "<!-- figures: made by weft bench accuracy --docs -->";
 inline constexpr const char* kFiguresEnd = "<!-- end of figures -->";
+Result<std::string> with_summary(const std::string& page, const AccuracyFigures& figures);
 Result<std::string> with_figures(const std::string& page, const AccuracyFigures& figures);
 
-/// Renews the figures of `folder`/accuracy.md and writes pictures/levels.svg, accuracy.svg, curves.svg and
-/// accuracy.json.
+/// Renews the generated parts of both pages in `folder` and writes pictures/levels.svg, accuracy.svg,
+/// curves.svg and accuracy.json. Nothing is written where a page or its marks are not there.
 Result<void> write_accuracy_docs(const std::filesystem::path& folder, const AccuracyFigures& figures);
 
 /// The figures of `folder`/pictures/accuracy.json; none where there is no such file.

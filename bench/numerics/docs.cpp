@@ -29,6 +29,7 @@ namespace fs = std::filesystem;
 using report::Colour;
 using report::Picture;
 
+constexpr const char* kPage = "measured/numerics.md";
 constexpr int kZoom = 2, kTextScale = 2, kGap = 8;
 constexpr Colour kWhite = {1, 1, 1}, kUnsolvedGrey = {0.45f, 0.45f, 0.45f};
 
@@ -236,7 +237,7 @@ Result<void> replace_between_marks(std::string& page, const std::string& name, c
   const std::string begin = "<!-- " + name + " -->\n", end = "<!-- end " + name + " -->";
   const std::size_t from = page.find(begin), to = page.find(end);
   if (from == std::string::npos || to == std::string::npos || to < from) {
-    return Error{ErrorKind::kBadData, "page has no place for the table", "numerics.md",
+    return Error{ErrorKind::kBadData, "page has no place for the table", kPage,
                  fmt::format("the marks of \"{}\" are not there", name), "restore the page"};
   }
   page.replace(from + begin.size(), to - from - begin.size(), text);
@@ -282,7 +283,7 @@ Result<void> write_page(const fs::path& file, const Rows& cases, const Rows& cur
 
 Result<void> write_numerics_docs(const fs::path& docs, const fs::path& scenes) {
   const Rows curve = numerics_curve();
-  if (Result<void> ok = write_page(docs / "numerics.md", numerics_cases(), curve); !ok) return ok;
+  if (Result<void> ok = write_page(docs / kPage, numerics_cases(), curve); !ok) return ok;
   if (Result<void> ok = write_file(docs / "numerics_curve.svg", numerics_plot(curve)); !ok) return ok;
   if (Result<void> ok = write_file(docs / "numerics_curve.json", document_of(curve)["rows"].dump(1) + "\n");
       !ok)

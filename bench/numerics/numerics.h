@@ -8,7 +8,7 @@
 
 namespace weft::bench {
 
-/// One row for each numerically hard case of docs/numerics.md, by its number.
+/// One row for each numerically hard case of docs/measured/numerics.md, by its number.
 /// plain_float32_deg, plain_double_deg: the textbook formula, (A^T A)^-1 A^T r of all readings as they are;
 /// worst angle to what exact arithmetic makes of the same readings. ours_deg: that of `fast` over all pixels
 /// with a solution. Null is no number at all. flags: the status bits that were raised, or what was refused.
@@ -24,9 +24,9 @@ Rows numerics_curve();
 /// The curve as a picture for print.
 std::string numerics_plot(const Rows& curve);
 
-/// Writes into a folder of documentation: the tables between their marks in numerics.md, which must be there,
-/// numerics_curve.svg and .json, and pictures/numerics_*.png of testdata/scenes/torture.toml, read from
-/// `scenes`.
+/// Writes into a folder of documentation: the tables between their marks in measured/numerics.md, which must
+/// be there, numerics_curve.svg and .json, and pictures/numerics_*.png of testdata/scenes/torture.toml, read
+/// from `scenes`.
 Result<void> write_numerics_docs(const std::filesystem::path& docs, const std::filesystem::path& scenes);
 
 }  // namespace weft::bench

@@ -24,7 +24,7 @@ struct AccuracyArguments {
   std::string set = "held-out";
   double megapixels = 0;  ///< of whole frames; 0: not these
   std::vector<std::string> parts;
-  std::filesystem::path docs;  ///< folder with accuracy.md; empty: no page
+  std::filesystem::path docs;  ///< folder with the pages on accuracy; empty: no page
 
   AccuracyTableOptions with(const StudyOptions& options) const {
     AccuracyTableOptions all = table;
@@ -92,7 +92,7 @@ app::Run add_accuracy(app::Options& options) {
                         .in_range(0.3, 200.0));
   instead.push_back(
       options.add("--docs", &a->docs,
-                  "All of it, into this folder: the figures of accuracy.md, its plots, accuracy.json"));
+                  "All of it, into this folder: accuracy.md, measured/accuracy.md, plots, accuracy.json"));
   exclude_each_other(instead);
   options.add("--seed", &a->table.seed, "Of weaves and noise, from 1").shows_default();
   options

@@ -67,8 +67,8 @@ app::Run add_numerics(app::Options& options) {
                                   [](const StudyOptions&) { return numerics_curve(); }}},
                                 &instead);
   const auto docs = std::make_shared<std::filesystem::path>();
-  instead.push_back(
-      options.add("--docs", docs.get(), "Folder with numerics.md, whose tables and pictures to make again"));
+  instead.push_back(options.add("--docs", docs.get(),
+                                "Folder with measured/numerics.md: its tables and pictures, made again"));
   options.add("--scenes", &choice->options.scenes, "Folder with torture.toml")
       .shows_default()
       .needs(instead.back());

@@ -7,14 +7,20 @@
 #include <filesystem>
 
 #include "core/base/files.h"
+#include "core/base/temporary_folder.h"
 #include "tests/core/places.h"
 
 namespace weft::bench {
 namespace {
 
-std::string marked(const std::string& summary, const std::string& figures) {
-  return std::string("title\n") + kSummaryBegin + summary + kSummaryEnd + "\nbetween\n" + kFiguresBegin +
-         figures + kFiguresEnd + "\nafter\n";
+std::string marked(const char* begin, const std::string& part, const char* end) {
+  return std::string("title\n") + begin + part + end + "\nafter\n";
+}
+std::string with_old_summary(const std::string& part) {
+  return marked(kSummaryBegin, part, kSummaryEnd);
+}
+std::string with_old_figures(const std::string& part) {
+  return marked(kFiguresBegin, part, kFiguresEnd);
 }
 
 // One scene by two levels and the oracle.
@@ -42,21 +48,37 @@ AccuracyFigures few_figures() {
 }
 
 TEST(AccuracyPage, ReplacesWhatStandsBetweenItsMarksAndNothingElse) {
-  const auto once = with_figures(marked("\nold\n", "old"), few_figures());
+  const auto once = with_figures(with_old_figures("\nold\n"), few_figures());
   ASSERT_TRUE(once.has_value()) << once.error().message();
-  EXPECT_EQ(*once, marked("\n\n" + summary_markdown(few_figures()) + "\n",
-                          "\n\n" + accuracy_markdown(few_figures()) + "\n"));
+  EXPECT_EQ(*once, with_old_figures("\n\n" + accuracy_markdown(few_figures()) + "\n"));
   const auto twice = with_figures(*once, few_figures());
   ASSERT_TRUE(twice.has_value());
   EXPECT_EQ(*twice, *once);
 }
 
+TEST(AccuracyPage, OfTheManualHasTheSummaryAlone) {
+  const auto once = with_summary(with_old_summary("old"), few_figures());
+  ASSERT_TRUE(once.has_value()) << once.error().message();
+  EXPECT_EQ(*once, with_old_summary("\n\n" + summary_markdown(few_figures()) + "\n"));
+  const auto twice = with_summary(*once, few_figures());
+  ASSERT_TRUE(twice.has_value());
+  EXPECT_EQ(*twice, *once);
+}
+
 TEST(AccuracyPage, IsRefusedWithoutItsMarks) {
-  for (const std::string& page :
-       {std::string("no marks"), std::string(kFiguresBegin), std::string(kSummaryEnd) + kSummaryBegin}) {
+  for (const std::string& page : {std::string("no marks"), std::string(kFiguresBegin),
+                                  with_old_summary("old"), std::string(kFiguresEnd) + kFiguresBegin}) {
     const auto renewed = with_figures(page, few_figures());
     ASSERT_FALSE(renewed.has_value()) << page;
     EXPECT_EQ(renewed.error().kind, ErrorKind::kBadData);
+    EXPECT_EQ(renewed.error().where, kFiguresPage);
+  }
+  for (const std::string& page :
+       {std::string(kSummaryBegin), with_old_figures("old"), std::string(kSummaryEnd) + kSummaryBegin}) {
+    const auto renewed = with_summary(page, few_figures());
+    ASSERT_FALSE(renewed.has_value()) << page;
+    EXPECT_EQ(renewed.error().kind, ErrorKind::kBadData);
+    EXPECT_EQ(renewed.error().where, kSummaryPage);
   }
 }
 
@@ -67,16 +89,20 @@ TEST(AccuracyPage, KeepsItsFiguresInAFileThatGivesThemBack) {
   EXPECT_EQ(figures_from_json(Json::object(), "accuracy.json").error().kind, ErrorKind::kBadData);
 }
 
-// The page is what its command made: nobody has changed a figure by hand or left a section out.
+// Both pages are what their command made: nobody has changed a figure by hand or left a section out.
 TEST(AccuracyPage, IsMadeOfTheFiguresBesideIt) {
   const std::filesystem::path docs = source_folder() / "docs";
   const auto figures = read_accuracy_docs(docs);
   ASSERT_TRUE(figures.has_value()) << figures.error().message();
-  const auto page = read_text(docs / "accuracy.md");
-  ASSERT_TRUE(page.has_value()) << page.error().message();
-  const auto made = with_figures(*page, *figures);
-  ASSERT_TRUE(made.has_value()) << made.error().message();
-  EXPECT_EQ(*made, *page);
+  const std::pair<const char*, decltype(&with_summary)> pages[] = {{kSummaryPage, with_summary},
+                                                                   {kFiguresPage, with_figures}};
+  for (const auto& [name, renew] : pages) {
+    const auto page = read_text(docs / name);
+    ASSERT_TRUE(page.has_value()) << page.error().message();
+    const auto made = renew(*page, *figures);
+    ASSERT_TRUE(made.has_value()) << made.error().message();
+    EXPECT_EQ(*made, *page) << name;
+  }
   const std::pair<const char*, report::Plot> plots[] = {{"levels.svg", levels_plot(*figures)},
                                                         {"accuracy.svg", accuracy_plot(*figures)},
                                                         {"curves.svg", curves_plot(*figures)}};
@@ -85,6 +111,29 @@ TEST(AccuracyPage, IsMadeOfTheFiguresBesideIt) {
     ASSERT_TRUE(drawn.has_value()) << drawn.error().message();
     EXPECT_EQ(plot_svg(plot), *drawn) << name;
   }
+}
+
+TEST(AccuracyPage, IsWrittenWithTheManualOrNeitherIs) {
+  const auto figures = read_accuracy_docs(source_folder() / "docs");
+  ASSERT_TRUE(figures.has_value()) << figures.error().message();
+  const TemporaryFolder scratch;
+  const std::filesystem::path manual = scratch.path() / kSummaryPage, tables = scratch.path() / kFiguresPage;
+  std::filesystem::create_directories(tables.parent_path());
+  ASSERT_TRUE(write_file(manual, with_old_summary("old")).has_value());
+  ASSERT_TRUE(write_file(tables, std::string("no marks")).has_value());
+  const auto refused = write_accuracy_docs(scratch.path(), *figures);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().where, kFiguresPage);
+  EXPECT_EQ(*read_text(manual), with_old_summary("old"));
+
+  ASSERT_TRUE(write_file(tables, with_old_figures("old")).has_value());
+  const auto written = write_accuracy_docs(scratch.path(), *figures);
+  ASSERT_TRUE(written.has_value()) << written.error().message();
+  EXPECT_EQ(*read_text(manual), with_old_summary("\n\n" + summary_markdown(*figures) + "\n"));
+  EXPECT_EQ(*read_text(tables), with_old_figures("\n\n" + accuracy_markdown(*figures) + "\n"));
+  const auto again = read_accuracy_docs(scratch.path());
+  ASSERT_TRUE(again.has_value()) << again.error().message();
+  EXPECT_EQ(json_of(*again), json_of(*figures));
 }
 
 TEST(AccuracyPage, ShowsEachMethodOnceWithItsFigures) {
