@@ -8,7 +8,7 @@
 
 namespace weft::bench {
 
-/// One row for each numerically hard case of docs/measured/numerics.md, by its number.
+/// One row for each numerically hard case of docs/numerics.md, by its number.
 /// plain_float32_deg, plain_double_deg: the textbook formula, (A^T A)^-1 A^T r of all readings as they are;
 /// worst angle to what exact arithmetic makes of the same readings. ours_deg: that of `fast` over all pixels
 /// with a solution. Null is no number at all. flags: the status bits that were raised, or what was refused.
