@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "calibration/run/sheet_files.h"
 #include "capture/frames/raw_picture.h"
 #include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
