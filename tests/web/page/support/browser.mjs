@@ -58,7 +58,7 @@ export class Visitor {
     await this.context.route(pattern, async (route) => {
       told();
       await gone;
-      await route.continue();
+      await route.fallback();
     });
     const arrive = async (page) => {
       const answered = page.waitForResponse(pattern);
