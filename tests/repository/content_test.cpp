@@ -89,6 +89,36 @@ std::vector<std::string> missing_content(std::string_view path, std::string_view
   return found;
 }
 
+/// The text of the comment that begins in `line`; "" where none does, or where it goes on from the line
+/// before.
+std::string_view begun_comment(std::string_view before, std::string_view line) {
+  const auto first = [](std::string_view text) {
+    return text.substr(std::min(text.find_first_not_of(' '), text.size()));
+  };
+  const std::size_t at = first(line).starts_with("//") ? line.find("//") : line.find(" //");
+  if (at == line.npos || (first(line).starts_with("//") && first(before).starts_with("//"))) return {};
+  std::string_view said = first(line.substr(at));
+  return said.substr(std::min(said.find_first_not_of("/!< "), said.size()));
+}
+
+/// Whether a comment begins with what its thing is of, and so leaves the thing out.
+bool leaves_out_its_thing(std::string_view comment) {
+  if (comment.starts_with("Of ")) return true;
+  const bool is_of = comment.starts_with("of ");
+  const std::string_view next = is_of ? comment.substr(3, comment.find_first_of(" ,.;:", 3) - 3) : "";
+  return next == "that" || next == "it" || next == "them" || next == "those";
+}
+
+std::vector<std::string> nameless_comments(const TextFile& file) {
+  std::vector<std::string> found;
+  std::string_view before;
+  const auto lines = lines_of(file.text);
+  for (std::size_t i = 0; i < lines.size(); before = lines[i++]) {
+    if (leaves_out_its_thing(begun_comment(before, lines[i]))) found.push_back(place(file.path, i + 1));
+  }
+  return found;
+}
+
 TEST(Content, NoFileNamesAMachineOrARegistry) {
   for (const TextFile& file : text_files()) {
     for (const std::string& found : forbidden_content(file.path, file.text)) ADD_FAILURE() << found;
@@ -99,6 +129,25 @@ TEST(Content, EverySourceHasItsLicenceItsGuardAndAModestLength) {
   for (const TextFile& file : text_files()) {
     for (const std::string& found : missing_content(file.path, file.text)) ADD_FAILURE() << found;
   }
+}
+
+TEST(Content, NoCommentBeginsWithWhatItsThingIsOf) {
+  for (const TextFile& file : text_files()) {
+    const bool is_ours =
+        is_source(file.path) || (ends_in(file.path, {".ts", ".tsx"}) && !file.path.ends_with(".d.ts"));
+    if (!is_ours) continue;
+    for (const std::string& found : nameless_comments(file)) ADD_FAILURE() << found << ": begins with \"of\"";
+  }
+}
+
+TEST(Content, ACommentWithoutItsThingIsFoundAndAFieldsIsNot) {
+  const auto found = [](std::string text) { return nameless_comments({"core/a.h", std::move(text)}).size(); };
+  EXPECT_EQ(found("/// Of the board.\n"), 1U);
+  EXPECT_EQ(found("int a;  ///< of that\n"), 1U);
+  EXPECT_EQ(found("// of them, the first\n"), 1U);
+  EXPECT_EQ(found("int a;  ///< of the board\n"), 0U);
+  EXPECT_EQ(found("// The first\n// of them.\n"), 0U);
+  EXPECT_EQ(found("// Often.\nconst char* kSaid = \"Of it\";\n"), 0U);
 }
 
 TEST(Content, AMachinePathIsFoundWhereverItStarts) {
