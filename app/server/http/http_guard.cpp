@@ -13,6 +13,7 @@
 #include <array>
 #include <cctype>
 
+#include "app/server/http/cookies.h"
 #include "app/server/http/path_pattern.h"
 #include "core/base/files.h"
 
@@ -123,17 +124,6 @@ bool is_json(const std::string& content_type) {
 }
 
 }  // namespace
-
-std::string_view cookie_in(std::string_view header, std::string_view name) {
-  while (!header.empty()) {
-    std::string_view pair = header.substr(0, header.find(';'));
-    header.remove_prefix(std::min(pair.size() + 1, header.size()));
-    pair.remove_prefix(std::min(pair.find_first_not_of(' '), pair.size()));
-    const std::size_t equals = pair.find('=');
-    if (equals != std::string_view::npos && pair.substr(0, equals) == name) return pair.substr(equals + 1);
-  }
-  return {};
-}
 
 std::optional<Refused> turned_away(const Visitor& visitor, const GuardRules& rules) {
   const auto refuse = [](int status, std::string what, std::string why, std::string remedy) {

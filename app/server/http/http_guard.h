@@ -10,10 +10,6 @@
 
 namespace weft::app {
 
-/// The value of a cookie in a Cookie header (RFC 6265, 5.4), the first of that name; empty where there is
-/// none.
-std::string_view cookie_in(std::string_view header, std::string_view name);
-
 /// What of a request decides whether it may come in; empty where the header is absent.
 struct Visitor {
   std::string method, host, origin, authorization, content_type;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/server/http/http_guard.h"
+#include "app/server/http/cookies.h"
 
 #include <gtest/gtest.h>
 

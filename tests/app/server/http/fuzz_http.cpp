@@ -9,7 +9,7 @@
 
 #include "app/server/api/bodies/scan_body.h"
 #include "app/server/http/conditions.h"
-#include "app/server/http/http_guard.h"
+#include "app/server/http/cookies.h"
 #include "app/server/http/error_reply.h"
 #include "app/server/http/request_frame.h"
 
