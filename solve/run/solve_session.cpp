@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <iterator>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -252,9 +251,9 @@ class Run {
     prepared.shifts = std::move(*found);
     facts_.registration = facts_of(prepared.shifts, prepared.photographs.leds);
     const std::vector<std::size_t> moved = prepared.shifts.with(pipeline::ShiftVerdict::kLeftOut);
-    for (const std::size_t k : std::views::reverse(moved)) {
-      if (k < prepared.numbers.size())
-        prepared.numbers.erase(prepared.numbers.begin() + static_cast<std::ptrdiff_t>(k));
+    for (auto k = moved.rbegin(); k != moved.rend(); ++k) {
+      if (*k < prepared.numbers.size())
+        prepared.numbers.erase(prepared.numbers.begin() + static_cast<std::ptrdiff_t>(*k));
     }
     return leave_out(moved, prepared.photographs);
   }
