@@ -55,7 +55,7 @@ double ior_of_f0(double f0);
 struct Alphas {
   double along = 0, across = 0;
 };
-/// Of a perceptual roughness and a strength of anisotropy as TexturedMaterial has them.
+/// The alphas of a perceptual roughness and a strength of anisotropy as TexturedMaterial has them.
 Alphas alphas_of(double roughness, double anisotropy);
 
 }  // namespace weft::exchange

@@ -8,7 +8,7 @@
 namespace weft::material {
 namespace {
 
-// Of the first value that is not finite; empty where all are.
+// Names the first value that is not finite; empty where all are.
 std::string not_finite(const Image<float>& map, const char* name) {
   for (int p = 0; p < map.planes(); ++p) {
     for (int y = 0; y < map.height(); ++y) {

@@ -10,7 +10,7 @@
 namespace weft::exchange {
 
 void encode_bc1(const StripRows& strip, bool has_three_steps, std::uint8_t* blocks, std::size_t step) {
-  // Of the two kinds that have four steps alone, kDxt3 wastes no time on alpha.
+  // kDxt3, unlike the other kind with four steps alone, wastes no time on alpha.
   const int kind = has_three_steps ? squish::kDxt1 : squish::kDxt3;
   for (std::size_t b = 0; b < strip.blocks; ++b) {
     std::array<squish::u8, 64> texels = {};

@@ -209,7 +209,7 @@ class Blocks {
     return hn::Add(hn::Add(high, high), low);
   }
 
-  // Of 64, of an index from 0 to 15: 0, 4, 9, 13 ... 64.
+  // Weight, of 64, of an index from 0 to 15: 0, 4, 9, 13 ... 64.
   static HWY_INLINE V weight_of(V index) { return rounded(hn::Mul(index, number(64.0f / 15))); }
   // As hardware interpolates: ((64 - w) first + w second + 32) / 64, rounded down.
   static HWY_INLINE V step(V first, V difference, V share) {

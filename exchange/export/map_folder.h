@@ -22,7 +22,7 @@ struct MapFolder {
   std::string kind;  ///< "maps", "material" or "solve"
   std::string id;
   std::string title;  ///< of the cloth, as people call it
-  std::string name;   ///< of it in names of files
+  std::string name;   ///< of the cloth in names of files
   Size size;
   std::optional<double> mm_per_pixel;  ///< none: photographs do not tell
   bool is_tile = false;

@@ -30,7 +30,7 @@ struct TextureToWrite {
 struct FilledPreset {
   exchange::Preset preset;
   std::string title;  ///< of the cloth, for people
-  std::string name;   ///< of it in file names
+  std::string name;   ///< of the cloth in file names
   Size size;
   PixelPitch pitch_mm = {};  ///< 0: not known
   std::vector<TextureToWrite> textures;

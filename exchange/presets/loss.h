@@ -19,9 +19,9 @@ struct AngleLoss {
   double mean_deg = 0, p95_deg = 0, max_deg = 0;  ///< p95 to one percent of itself
 };
 
-/// Of reflectance: the mean of its absolute difference, and 10 log10 of 1 over the mean square difference of
-/// the samples as the file holds them (of sRGB after its transfer function, of integers cut to 0 to 1); none
-/// where nothing is lost.
+/// The loss of reflectance: the mean of its absolute difference, and 10 log10 of 1 over the mean square
+/// difference of the samples as the file holds them (of sRGB after its transfer function, of integers cut to
+/// 0 to 1); none where nothing is lost.
 struct ColorLoss {
   double mean_abs = 0;
   std::optional<double> psnr_db = {};
@@ -60,7 +60,7 @@ void describe(Fields& fields, Loss& loss);
 Loss measure_loss(const PresetFile& file, const SourcePlanes& planes, const ChannelFacts& facts,
                   Image<float> samples);
 
-/// Of each roughness of a file, level by level down to some 8 texels a side.
+/// The losses of each roughness of a file, level by level down to some 8 texels a side.
 std::vector<DistanceLoss> loss_by_distance(const PresetFile& file, const SourcePlanes& planes,
                                            const ChannelFacts& facts, LobeLevels lobe, Size size,
                                            int threads);

@@ -26,7 +26,7 @@ struct FarmLimits {
 
   friend bool operator==(const FarmLimits&, const FarmLimits&) = default;
 };
-/// Of `scontrol show config`; Slurm's own defaults where it does not say.
+/// Reads `scontrol show config`; Slurm's own defaults where it does not say.
 FarmLimits limits_from(std::string_view config);
 
 struct FarmOptions {

@@ -47,8 +47,8 @@ struct Forecast {
   bool is_measured = false;                ///< on this very session; else carried over from others
   std::optional<double> turn_deg = {};     ///< mean angle to the solve before
   double solved = 1;                       ///< share of the cloth that has a normal: `degrees` holds for it
-  /// Of `seconds` the solve alone, as its solve.json counts them; 0 where nothing was measured, and in plans
-  /// of early versions.
+  /// The solve's own part of `seconds`, as its solve.json counts it; 0 where nothing was measured, and in
+  /// plans of early versions.
   double solve_seconds = 0;
 
   friend bool operator==(const Forecast&, const Forecast&) = default;

@@ -24,7 +24,7 @@ void add_texts(const Json& list, const char* key, std::vector<std::string>& fold
   }
 }
 
-// Of one line; empty: it is a heading.
+// The folder that a line names; empty: it is a heading.
 std::string_view folder_in(std::string_view line) {
   line = trimmed(line);
   std::string_view bare = line;

@@ -53,15 +53,15 @@ struct ByCalibration {
 struct Summary {
   int solved = 0, there = 0, failed = 0, missing = 0;
   int second_attempts = 0;                    ///< sessions that were begun more than once
-  double seconds = 0, predicted_seconds = 0;  ///< of those solved, node-seconds
-  MeanError error, predicted_error;           ///< of those solved: as solves expect it, and as predicted
+  double seconds = 0, predicted_seconds = 0;  ///< of solved sessions, node-seconds
+  MeanError error, predicted_error;           ///< of solved sessions: as solves expect it, and as predicted
   std::uint64_t peak_bytes = 0;
   std::vector<std::size_t> barely_solved;   ///< rows that are done and have under kLeastSolved of a cloth
   std::vector<std::size_t> warned;          ///< rows that are done and whose solves warn
   std::vector<Cause> causes;                ///< of failed and missing sessions, the most frequent first
   std::vector<std::size_t> changed;         ///< rows that were compared, the gravest first (is_graver)
-  int worse = 0;                            ///< of them with regressions
-  int unchanged = 0;                        ///< of them without a changed pixel
+  int worse = 0;                            ///< compared rows with regressions
+  int unchanged = 0;                        ///< compared rows without a changed pixel
   std::vector<ByCalibration> calibrations;  ///< the most suspect first
   std::vector<int> missing_tasks;           ///< with a missing session, rising
 

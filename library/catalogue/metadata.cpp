@@ -179,7 +179,7 @@ bool note_choice(Session& session) {
   return true;
 }
 
-// Of a session's document; 0 where it holds none, or none that counts.
+// The revision in a session's document; 0 where it holds none, or none that counts.
 int revision_of(const Json& session) {
   const Json metadata = session.value("metadata", Json());
   const Json revision = metadata.is_object() ? metadata.value("revision", Json()) : Json();

@@ -33,7 +33,7 @@ std::vector<std::string> warnings_of(const Session& session);
 /// Whether a file is really there: a link in a session could lead out of it.
 bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder);
 
-/// Of all files at and below a folder; links count nothing.
+/// The size of all files at and below a folder; links count nothing.
 std::uint64_t bytes_below(const std::filesystem::path& folder);
 
 }  // namespace weft::library

@@ -37,8 +37,8 @@ struct Freed {
   std::uint64_t bytes = 0;
 };
 
-/// Of sessions whose current solve is the one that the plan made: solves that are neither that nor among the
-/// `keep` newest (library/catalogue/prune.h). Removed only where `yes`.
+/// Prunes sessions whose current solve is the one that the plan made: solves go that are neither that nor
+/// among the `keep` newest (library/catalogue/prune.h). Removed only where `yes`.
 Result<std::vector<Freed>> prune_batch(const std::filesystem::path& plan, int keep, bool yes);
 
 }  // namespace weft::app

@@ -208,7 +208,7 @@ class Planning {
     return nearest == follow_ups_.end() ? nullptr : &*nearest;
   }
 
-  // Of a session at a level; nothing where none was measured.
+  // The follow-up of a session at a level; nothing where none was measured.
   FollowUpPrice follow_up_of(std::size_t i, std::size_t level) const {
     const double megapixels = candidates_[i].traits.megapixels;
     const FollowUpPrice* const nearest = nearest_follow_up(megapixels);
@@ -223,7 +223,7 @@ class Planning {
   }
 
   bool is_fixed() const { return levels_.size() == 1; }
-  // Of a session, `level` being one of levels_.
+  // The level of a session, `level` being an index into levels_.
   const LevelOfSession& level_of(std::size_t i, std::size_t level) const {
     return candidates_[i].levels[levels_[level]];
   }

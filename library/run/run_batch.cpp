@@ -360,7 +360,7 @@ class BatchRun {
     return {};
   }
 
-  // Of the seconds that were foreseen; where nothing was measured, of the sessions.
+  // The share of the seconds that were foreseen; where nothing was measured, of the sessions.
   double share_done() const {
     const double of_sessions = static_cast<double>(done_) / static_cast<double>(items_.size());
     return seconds_in_all_ > 0 ? std::clamp(1 - seconds_to_do_ / seconds_in_all_, 0.0, 1.0) : of_sessions;

@@ -35,7 +35,7 @@ struct BuiltMaterial {
 
 struct BuildReport {
   std::vector<BuiltMaterial> materials;      ///< those that were asked for, in their order
-  int built = 0, kept = 0;                   ///< of them and all that they lie on
+  int built = 0, kept = 0;                   ///< of the materials and all that they lie on
   int hashed = 0;                            ///< files that were read to know whether they changed
   std::vector<std::filesystem::path> files;  ///< that a change of would build something
 };

@@ -293,7 +293,8 @@ class Composer {
                  surface_.albedo);
   }
 
-  // Of what was composed, never composed of mips: only so do they have the spread of all normals beneath.
+  // Mips come of what was composed, never of composed mips: only so do they have the spread of all normals
+  // beneath.
   Result<void> write_mips() {
     if (!has_relief_ && surface_.lobe.empty()) return {};
     Result<std::vector<material::MipLevel>> levels =

@@ -14,7 +14,7 @@ namespace weft::app {
 /// a file that was only touched is read, and has the digest that it had.
 class DigestCache {
  public:
-  /// Of `file`, or empty where that cannot be read.
+  /// The cache in `file`, empty where that cannot be read.
   explicit DigestCache(std::filesystem::path file);
 
   /// kNoInput.

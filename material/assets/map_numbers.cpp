@@ -62,7 +62,7 @@ double perceptual(double value, const std::string& unit) {
   return material::on_scale(material::GlossScale::kRoughness, material::alpha_of(*scale, value));
 }
 
-// Of roughness.exr: whatever way its axes stand, the broad one is across the yarn.
+// A parameter of roughness.exr: whatever way its axes stand, the broad one is across the yarn.
 double of_lobe(Parameter parameter, const Values& lobe) {
   const double broad = std::max(lobe[0], lobe[1]), narrow = std::min(lobe[0], lobe[1]);
   if (parameter == Parameter::kRoughness) return std::sqrt(std::max(broad, 0.0));
@@ -155,7 +155,7 @@ Result<ParameterField> read_field(Parameter parameter, const MapFile& map, const
   const Result<LoadedImage> image = read_samples(map.file);
   if (!image) return image.error();
   const ParameterFacts& facts = material::facts_of(parameter);
-  // Of a normal the third part follows from two.
+  // The third part of a normal follows from two.
   const bool lacks_z = facts.kind == ParameterKind::kNormal && map.channels.size() == 2;
   const std::size_t count = map.is_lobe ? 3
                             : lacks_z   ? 2

@@ -210,7 +210,7 @@ void take_roughness(exchange::RoughnessConvention convention, MapFile& map) {
   }
 }
 
-// Of a file that an export.json lists.
+// Takes what an export.json lists of a file.
 Result<void> take_listing(Parameter parameter, const FileMeaning& meaning, const Json& value,
                           const std::string& where, MapFile& map) {
   const std::string said = value.value("channel", "");
@@ -235,7 +235,7 @@ Result<void> take_listing(Parameter parameter, const FileMeaning& meaning, const
                   "name another file of the export, or say channel");
 }
 
-// Of any file, as far as it tells itself.
+// Takes what any file tells of itself.
 Result<void> take_tags(Parameter parameter, const FileMeaning& meaning, const Json& value,
                        const std::string& where, MapFile& map) {
   const ImageFileInfo& info = meaning.info;

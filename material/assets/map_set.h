@@ -58,10 +58,10 @@ struct MapFile {
 };
 
 /// The map that a value of a parameter names, {"map", "scan", ...} in its one form; its numbers are not read.
-/// Of a file they are what its meaning (material/read/file_meaning.h) says unless the value does. `where` is
-/// for messages. kNoInput; kBadData with the nearest map that the scan has, for a unit that is another's, for
-/// a relative albedo without a scale, for a file that an export.json lists as something else, and for heights
-/// in integers of which nobody says the millimetres.
+/// A file's numbers are what its meaning (material/read/file_meaning.h) says unless the value does. `where`
+/// is for messages. kNoInput; kBadData with the nearest map that the scan has, for a unit that is another's,
+/// for a relative albedo without a scale, for a file that an export.json lists as something else, and for
+/// heights in integers of which nobody says the millimetres.
 Result<MapFile> find_map(material::Parameter parameter, const Json& value, const std::string& where);
 /// Likewise of a mask or of weights.
 Result<MapFile> find_mask(const Json& value, const std::string& where);

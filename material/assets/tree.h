@@ -41,7 +41,7 @@ struct MaterialNode {
   std::vector<std::size_t> layers = {}, runtime = {};        ///< nodes of their materials
   std::vector<std::optional<material::LayerFit>> fits = {};  ///< of each layer that has a map
 
-  /// Of a pixel; 0 where the size is not known.
+  /// The side of a pixel; 0 where the size is not known.
   double mm_per_pixel() const { return size_mm ? (*size_mm)[0] / size.width : 0; }
 };
 

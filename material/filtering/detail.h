@@ -57,7 +57,7 @@ enum class NormalBlend {
 const char* name_of(NormalBlend blend);
 std::optional<NormalBlend> normal_blend_named(std::string_view name);
 
-/// Of unit normals whose z is above 0; the result has unit length.
+/// Blends unit normals whose z is above 0; the result has unit length.
 Vec3 blended(Vec3 base, Vec3 detail, NormalBlend blend);
 
 }  // namespace weft::material

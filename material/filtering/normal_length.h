@@ -7,9 +7,9 @@
 
 namespace weft::material {
 
-/// Of GGX facets of roughness `alpha`, 0 to 1, weighed by the area that they cover seen from above: 1 at 0,
-/// 2/3 at 1 (seed 001 eq. 26). In its logarithm's form it loses no digits at small alpha; above alpha 0.954,
-/// where both terms cancel, it is the sum of its series.
+/// Mean normal's length for GGX facets of roughness `alpha`, 0 to 1, weighed by the area that they cover seen
+/// from above: 1 at 0, 2/3 at 1 (seed 001 eq. 26). In its logarithm's form it loses no digits at small alpha;
+/// above alpha 0.954, where both terms cancel, it is the sum of its series.
 double normal_length(double alpha);
 
 /// The same weighed by the facets' own area: 1 at 0, 1/2 at 1 (seed 001 eq. 24).

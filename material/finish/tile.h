@@ -11,7 +11,7 @@ namespace weft::material {
 /// What is asked of a tile.
 struct TilingOptions {
   Size period_px = {};  ///< of the tile; 0: as wide, as high as fits
-  /// Of the repeat along x and y, pixels; 0: a cloth without repeat, cut where it is closest to itself.
+  /// The repeat along x and y, pixels; 0: a cloth without repeat, cut where it is closest to itself.
   double repeat_x_px = 0, repeat_y_px = 0;
   int overlap_px =
       0;  ///< where the cut may run; 0: whole repeats, 24 pixels at least, or an eighth of a felt

@@ -17,7 +17,7 @@ constexpr int kMostRepeats = 16;
 constexpr double kLeastLevel = 0.5;
 using RepeatValues = std::map<std::pair<int, int>, double>;
 
-// Of the luminance at whole repeats of the weave.
+// Correlations of the luminance at whole repeats of the weave.
 RepeatValues correlations_at_repeats(const Cell& cell, const Correlation& luminance) {
   RepeatValues values;
   for (int j = 0; j <= kMostRepeats; ++j) {

@@ -50,9 +50,9 @@ struct Correlations {
   std::array<double, 3> variance = {};  ///< of each, to a factor that the slopes have in common
 };
 
-/// Of the `crop` of a surface. Trends over more than 64 pixels are taken out first; pixels without a solution
-/// count as 0. Lags reach half the crop's shorter side, and each sum is divided by the pixels in it. A
-/// Gaussian of 0.8 pixels takes noise out of the lags.
+/// Correlates the `crop` of a surface. Trends over more than 64 pixels are taken out first; pixels without a
+/// solution count as 0. Lags reach half the crop's shorter side, and each sum is divided by the pixels in it.
+/// A Gaussian of 0.8 pixels takes noise out of the lags.
 Correlations correlate(const Surface& surface, Rect crop, int threads);
 
 /// The mean of some correlations, each within -1 and 1.

@@ -163,8 +163,8 @@ std::optional<Yarns> surest_pair(const std::vector<Way>& ways, const Cell& cell,
   return found;
 }
 
-// Among all pairs of ways of the lattice that are nearly upright to each other the one along which most of the
-// slopes' energy goes on. The mean of the correlation along a way is that energy's share (Wiener and
+// Among all pairs of ways of the lattice that are nearly upright to each other the one along which most of
+// the slopes' energy goes on. The mean of the correlation along a way is that energy's share (Wiener and
 // Khinchin): a yarn goes on along itself, with its section, its crimp and whatever its thickness does, while
 // along a diagonal hollows follow crests. Albedo has no vote, since prints and stripes go where they like.
 // Diagonals and yarns of one cloth may be close, so a pair beyond 30 degrees from the frame has to be half
@@ -237,7 +237,7 @@ LatticeKind kind_of(const Lattice& lattice, const std::vector<const Correlation*
   return is_too_fine(lattice, slopes) ? LatticeKind::kTooFine : LatticeKind::kRepeat;
 }
 
-// Of the slopes at the nearest repeats.
+// The weakest slope's mean correlation at the nearest repeats.
 double strength_of(const Cell& cell, const std::vector<const Correlation*>& slopes) {
   double least = 1;
   for (const Correlation* each : slopes) {

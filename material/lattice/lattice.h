@@ -54,7 +54,7 @@ struct Lattice {
 
 /// What somebody says of the yarns; what is not said is found.
 struct SaidYarns {
-  /// Of axes.a from +x, counterclockwise; a right angle more or less is the same.
+  /// The turn of axes.a from +x, counterclockwise; a right angle more or less is the same.
   std::optional<double> turn_deg = {};
   double x_px = 0, y_px = 0;  ///< as Lattice::yarn_x_px and yarn_y_px; 0: not said
 };

@@ -14,8 +14,8 @@ namespace weft::material {
 /// The same lattice by its shortest ways (Gauss), a the one that lies nearest to +x.
 Cell reduced(Cell cell);
 
-/// Of pairs of peaks the one with the smallest area among those whose multiples are peaks too, in each of
-/// the slopes that repeat.
+/// The pair of peaks with the smallest area among those whose multiples are peaks too, in each of the slopes
+/// that repeat.
 std::optional<Cell> first_cell(const Correlations& correlations, const Correlation& mean);
 
 /// A cell and how well peaks in reach agree with it.

@@ -32,7 +32,7 @@ struct ParameterField {
 /// A copy, which Image does not make unasked.
 ParameterField copy_of(const ParameterField& field);
 
-/// Of each plane, in double and in the order of rows.
+/// The mean of each plane, in double and in the order of rows.
 std::array<double, 3> means_of(const ParameterField& field);
 
 /// Slopes of a unit normal whose z is below that of 89 degrees count as of 89 degrees.

@@ -48,7 +48,7 @@ void join_normals(Values& below, const Values& layer, double mask, const Values&
   below[1] = slopes[1];
 }
 
-// Of the roots of alphas, as the parameter has them.
+// Joins lobes by the roots of their alphas, as the parameter has them.
 void join_lobes(Values& below, const Values& layer, double mask, const Values&) {
   if (mask > 0) below[0] = std::sqrt(joined_alpha(below[0] * below[0], mask * layer[0] * layer[0]));
 }

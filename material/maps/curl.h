@@ -25,7 +25,7 @@ struct Curl {
   int window_px = 0;        ///< its side, odd
   double frame_median = 0;  ///< of |z| over the frame: 0.67 if sigma is all that is wrong
   double flagged_share = 0;  ///< of the pixels where something is known, those with a median above kCurlLimit
-  /// Of the flagged pixels, those the solve calls SPECULAR and SHADOWED: the likely causes.
+  /// Shares of the flagged pixels that the solve calls SPECULAR and SHADOWED: the likely causes.
   double specular_share = 0, shadowed_share = 0;
 
   bool is_of_no_surface() const { return frame_median > kCurlLimit; }

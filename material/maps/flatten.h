@@ -44,8 +44,8 @@ struct FlattenOptions {
 class SlowSlopes {
  public:
   FlattenMethod method = FlattenMethod::kHann;  ///< the one that ran
-  /// Of the polynomial, at most that asked for: folds that it cannot hold leave a lower one, or none (0). 0
-  /// for kHighPass.
+  /// The polynomial's degree, at most that asked for: folds that it cannot hold leave a lower one, or none
+  /// (0). 0 for kHighPass.
   int degree = 0;
   bool lacks_repeats =
       false;             ///< kRepeat was asked for, but the frame holds fewer than six either way: kHann

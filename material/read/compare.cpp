@@ -157,7 +157,7 @@ Result<NumberComparison> compare_numbers(const Pair& pair, std::size_t tested_ch
   return c;
 }
 
-// Of each number that both have by its name; of one alone whatever it is called.
+// Compares each number that both have by its name; a single one whatever it is called.
 Result<std::vector<NumberComparison>> compare_as_numbers(const Pair& pair) {
   const std::vector<std::string> tested = pair.tested.numbers(), truth = pair.truth.numbers();
   std::vector<NumberComparison> all;

@@ -25,9 +25,9 @@ struct ChannelMeaning {
   bool is_srgb = false;  ///< as a colour it has that transfer function (transfer_of() of linear_image.h)
   std::optional<exchange::ChannelRange> range = {};  ///< values of the samples 0 and 1; none: nobody says
 
-  /// Of a colour the linear one.
+  /// A colour's value is the linear one.
   double value_of(double sample) const;
-  /// Of what is none.
+  /// A value that is no colour's.
   double in_range(double sample) const;
 };
 

@@ -118,7 +118,8 @@ class Finisher {
   FinishingFacts facts;
 
  private:
-  // Of the tile that comes after; a straightened cloth is scaled so that so many are whole pixels.
+  // The repeats of the tile that comes after; a straightened cloth is scaled so that so many are whole
+  // pixels.
   static std::array<int, 2> repeats_wanted(const Recipe& recipe, std::size_t from) {
     for (std::size_t i = from; i < recipe.steps.size(); ++i) {
       if (recipe.steps[i].name != "tile") continue;

@@ -163,7 +163,7 @@ Result<void> find_openness(MapWork& work) {
   return {};
 }
 
-// Of the sky that a point sees: the share, what reaches it with the light that its surroundings throw, by
+// The sky that a point sees: its share, what reaches the point with the light that its surroundings throw, by
 // channel, and the half angle of the cone about the bent normal that is as wide.
 Result<void> make_occlusion(MapWork& work) {
   if (Result<void> ok = find_openness(work); !ok) return ok;

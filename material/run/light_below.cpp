@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of full scale: a table that is darker tells nothing of what covers it.
+// Share of full scale: a table that is darker tells nothing of what covers it.
 constexpr float kLeastLight = 0.01F;
 constexpr const char* kNoPhotograph = "it has no photograph by the light below";
 

@@ -22,8 +22,8 @@ struct ThroughCloth {
 };
 
 /// `bare` is a session of the table without cloth, photographed by the same light and at the same exposure.
-/// Cells of 2 x 2 photosites are read, all colours together. kBadData where one
-/// of them has no such photograph or no dark shot, the exposures differ, or the sizes; kNoInput.
+/// Cells of 2 x 2 photosites are read, all colours together. kBadData where one of them has no such
+/// photograph or no dark shot, the exposures differ, or the sizes; kNoInput.
 Result<ThroughCloth> light_through_cloth(const Session& session, const std::filesystem::path& bare,
                                          const Calibration& calibration, const RectifyFacts& rectified,
                                          int threads);

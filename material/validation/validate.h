@@ -45,7 +45,7 @@ struct MapsToValidate {
   std::vector<KnownGrey> greys = {};
   bool is_metal = false;            ///< typed by a person; F0 is then that of a metal
   bool has_measured_black = false;  ///< the session has a dark frame: dark albedos may be believed
-  /// Of the solve, "standard"; empty: nobody knows. No remedy names it or one below.
+  /// The solve's level, "standard"; empty: nobody knows. No remedy names it or one below.
   std::string level = {};
   bool is_height_of_slopes = false;  ///< integrated from this surface's slopes, so that its scale is theirs
   bool is_colour_changed = false;    ///< by a person, in a step that can be taken back

@@ -56,7 +56,7 @@ Result<void> Realign::put(const MapBand& band) {
   return taken;
 }
 
-// Of rows of the image, the first of them even.
+// Aligns rows of the image, the first of them even.
 void Realign::align(Rect rows) {
   if (aligned_.height() < rows.height()) {
     aligned_ = Image<float>({size_.width, rows.height()}, kAligned);

@@ -6,7 +6,7 @@
 
 namespace weft::pipeline {
 
-/// Of a cloth that does not lie flat: lays it level and tilts the rig about it, so that maps are those of the
+/// Lays a cloth level that does not lie flat and tilts the rig about it, so that maps are those of the
 /// cloth's own plane. Errors: as LightField::make.
 Result<void> lay_level(const Exposures& exposures);
 

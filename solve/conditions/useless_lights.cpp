@@ -62,7 +62,7 @@ FrameStatistics statistics_of(const Photographs& photographs, std::size_t k) {
           std::sqrt(share_of(floor, finite))};
 }
 
-// Of all lights that are useless for one reason; empty where none is.
+// Names all lights that are useless for one reason; empty where none is.
 std::string useless_words(const std::vector<UselessLight>& useless, UselessLight::Why why,
                           const std::vector<int>& leds) {
   std::vector<int> of_leds;

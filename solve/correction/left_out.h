@@ -19,7 +19,7 @@ struct SolveVariant {
   const solver::Method* method = nullptr;
   LightCorrection* correction = nullptr;  ///< readings go through it, if there is one
   std::span<const double> gains = {};  ///< by light, its light over that of its calibration; empty: all are 1
-  /// Of crossed and parallel photographs the parallel ones are predicted, which show lobes; else `frames`.
+  /// Predicts the parallel ones of crossed and parallel photographs, which show lobes; else `frames`.
   bool judged_by_parallel = false;
 };
 

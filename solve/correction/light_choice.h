@@ -40,7 +40,7 @@ Result<LightChoice> choose_light(const Photographs& photographs, const solver::M
 /// highlight say, with them: that predicts nothing better.
 solver::Gain gain_of_correction(const solver::LeftOut& without, const solver::LeftOut& with);
 
-/// Of how many patches choose_light() leaves lights out in a frame of this size.
+/// How many patches choose_light() leaves lights out of in a frame of this size.
 std::size_t light_choice_patches(Size size);
 
 }  // namespace weft::pipeline

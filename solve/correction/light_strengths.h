@@ -16,7 +16,7 @@ class LightStrengths {
   /// On this many threads; the field must outlive this.
   LightStrengths(const LightField& field, Size size, int threads);
 
-  /// Of light k in channel c at columns x0 <= x < x1 of row y.
+  /// Strengths of light k in channel c at columns x0 <= x < x1 of row y.
   void read(std::size_t k, int c, int y, int x0, int x1, float* strength) const;
 
  private:

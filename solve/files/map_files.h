@@ -14,7 +14,7 @@
 
 namespace weft::app {
 
-/// Of a pixel in the middle of the frame, where the cloth lies; 0 where no camera is known.
+/// The pitch of a pixel in the middle of the frame, where the cloth lies; 0 where no camera is known.
 PixelPitch pitch_in_the_middle(const pipeline::Photographs& photographs);
 
 /// The map files of a solve, written band by band: docs/formats.md.

@@ -21,7 +21,7 @@ namespace {
 
 // Where no scale is known a lobe is first sought as if the median albedo were this.
 constexpr double kUsualAlbedo = 0.18;
-// Of the refractive indices of fibres, 1.5.
+// F0 by the refractive indices of fibres, 1.5.
 constexpr double kFibreF0 = 0.04;
 constexpr double kRounding = 1e-9;
 

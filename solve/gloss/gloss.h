@@ -49,7 +49,7 @@ struct GlossFacts : MeasuredGloss {
   double seconds = 0;           ///< that looking for them took, whatever the frame's size
   bool of_film_pair = false;    ///< they were sought in crossed and parallel photographs
   bool of_second_pose = false;  ///< and in a second pose of the cloth
-  /// Of each lobe with a tint its f0 in the channels of the albedo that is written.
+  /// The f0 of each lobe with a tint, in the channels of the albedo that is written.
   std::vector<std::optional<F0OfChannels>> f0_of_channels = {};
 
   bool is_measured() const { return lobes.front().is_measured(); }

@@ -151,7 +151,7 @@ Result<void> read_developed(const SolvePlan& plan, const JobContext& context, Ph
   return {};
 }
 
-// Of what the surface mirrors, over the share of what it scatters.
+// The share of what the surface mirrors, over that of what it scatters.
 double lobe_share_of(Polariser polariser, const Films& films) {
   switch (polariser) {
     case Polariser::kNone:

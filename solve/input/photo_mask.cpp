@@ -25,7 +25,6 @@ Error unfit_mask(const fs::path& file, std::string what, std::string why) {
           "paint white where cloth is and black elsewhere, or take the mask away"};
 }
 
-// Of a plane.
 struct Range {
   float least = 0, most = 0;
   bool is_constant() const { return least == most; }

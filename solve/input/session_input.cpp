@@ -29,7 +29,7 @@ void leave_out_by_person(SolvePlan& plan) {
   });
 }
 
-// Of a rig that was known to have moved when the cloth was scanned.
+// Warns of a rig that was known to have moved when the cloth was scanned.
 void tell_of_moved_rig(SolvePlan& plan) {
   const Json accepted = plan.session.document.value("accepted_moved", Json());
   if (!accepted.is_object()) return;

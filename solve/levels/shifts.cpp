@@ -42,7 +42,7 @@ bool has_moved(const solver::ShotRegistration& shot) {
 constexpr int kFarSide = 256;                          // pixels a side that are searched
 constexpr std::array<int, 2> kFarParts = {512, 2048};  // pixels a side of the frame, one after the other
 
-// Of so many photographs shifts are found in moments; photographs that are developed are copied as they are
+// Shifts of so many photographs are found in moments; photographs that are developed are copied as they are
 // cut.
 constexpr std::size_t kMostFarShots = 64;
 constexpr double kMostCopied_bytes = 512e6;

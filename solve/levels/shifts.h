@@ -44,7 +44,7 @@ Result<SessionShifts> register_shots(const Photographs& photographs, const JobCo
 /// Shifts beyond those that are registered.
 struct FarShifts {
   std::vector<std::size_t> moved;  ///< lights whose shots show the cloth elsewhere; empty: nothing was found
-  double most_px = 0;              ///< of them, in pixels of the frame
+  double most_px = 0;              ///< the largest shift, in pixels of the frame
   double explained = 0;            ///< solver::FarShifts::explained
   double reach_px = 0;             ///< no shift beyond it was looked for; 0: none was
 };

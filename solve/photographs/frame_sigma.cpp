@@ -24,7 +24,8 @@ float step_of(const std::array<float, 3>& a, const std::array<float, 3>& b, std:
   return std::copysign(std::sqrt(x * x + y * y + z * z), b[axis] - a[axis]);
 }
 
-// Of three normals in a row, in the direction in which `axis` grows. Beyond the edge it goes on as before.
+// within_pixel2() by three normals in a row, in the direction in which `axis` grows. Beyond the edge it goes
+// on as before.
 float within_of(const std::array<float, 3>* before, const std::array<float, 3>& here,
                 const std::array<float, 3>* after, std::size_t axis) {
   if (before == nullptr && after == nullptr) return 0;

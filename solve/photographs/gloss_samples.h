@@ -25,7 +25,7 @@ struct GlossSamples {
   std::span<const solver::LobeReading> of(std::size_t pixel) const {
     return {readings.data() + pixel * each(), each()};
   }
-  /// Of one channel of RGB.
+  /// A pixel's readings in one channel of RGB.
   std::span<const solver::LobeReading> of_plane(std::size_t plane, std::size_t pixel) const {
     return {planes[plane].data() + pixel * each(), each()};
   }

@@ -95,7 +95,7 @@ std::vector<double> listed(const std::array<double, 3>& rgb) {
   return {rgb.begin(), rgb.end()};
 }
 
-// Of R, G and B: what a neutral lobe does not say.
+// Adds R, G and B: what a neutral lobe does not say.
 void add_tint(const MeasuredLobe& lobe, const pipeline::F0OfChannels& channels, AlbedoScale scale,
               LobeCluster& cluster) {
   for (const double f0 : channels.f0) cluster.tint.push_back(f0 / lobe.lobe.f0);

@@ -178,7 +178,7 @@ LightFacts facts_of(const solver::LightEvidence& light, int number_of_light) {
           .gradient_share = light.gradient_share};
 }
 
-// Of the maps' pixels.
+// The share of the maps' pixels.
 double share_with(const SolveFacts& solve, StatusBit bit) {
   return static_cast<double>(solve.status.with(bit)) / static_cast<double>(solve.size.pixels());
 }
@@ -359,7 +359,7 @@ PhotographsSummary summarize_photographs(const pipeline::Photographs& photograph
 
 namespace {
 
-// Of shifts that were measured: one verdict or none.
+// Verdicts on shifts that were measured: one or none.
 std::vector<Verdict> moved_verdicts(const PhotographsSummary& photographs) {
   const Speaker say = {photographs};
   const std::string remedy =
@@ -398,7 +398,7 @@ double misfit_of(const PhotographsSummary& photographs) {
   return diagnosis.faults.empty() ? diagnosis.residual : diagnosis.left;
 }
 
-// Of readings that fit no cloth, for a reason that nothing told.
+// The verdict on readings that fit no cloth, for a reason that nothing told.
 Verdict unexplained(const PhotographsSummary& photographs, std::optional<solver::Level> level) {
   std::string looked_at = "exchanged, dead and dimmer lights";
   if (photographs.far_shifts && photographs.far_shifts->reach_px > 0)

@@ -63,7 +63,7 @@ class MapSummary {
   void add(const pipeline::MapBand& band, View<const float> normal_deg,
            View<const float> calibration_deg = {});
 
-  /// Of the share of the cloth that is solved.
+  /// The angle over the share of the cloth that is solved.
   SigmaMap sigma_map() const;
   /// The angle and its parts: of noise, of the model, and of the calibration's covariance.
   SigmaFacts sigma_facts() const;
@@ -91,7 +91,7 @@ struct PhotographsSummary {
   pipeline::SessionShifts shifts;                 ///< of the photographs as they were read
   std::optional<pipeline::FarShifts> far_shifts;  ///< where they were looked for
   bool shadow_reach_is_capped = false;
-  /// Of a session: its folder's name, the shot of each LED, and the shots that a person left out.
+  /// What a session adds: its folder's name, the shot of each LED, and the shots that a person left out.
   std::string session;
   std::map<int, int> shot_of_led;
   std::vector<int> left_out;

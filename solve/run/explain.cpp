@@ -114,7 +114,7 @@ Result<SharedSeconds> shared_seconds(const Photographs& photographs, const Solve
                        growing(&SolveSeconds::pictures), growing(&SolveSeconds::sync)};
 }
 
-// Of the whole frame, from those of its cut; reading and registering it aside.
+// Seconds of the whole frame, from those of its cut; reading and registering it aside.
 LevelSeconds scaled(const SolveSeconds& cut, const SharedSeconds& shared, Size frame, bool is_half) {
   const Rect area = timed_area(frame);
   const Size in_cut = {area.width(), area.height()};

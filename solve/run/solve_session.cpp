@@ -104,7 +104,7 @@ double seconds_until_published(const SolveSeconds& s) {
 struct FinishedBand {
   pipeline::MapBand maps;
   std::vector<View<const float>> sigma;  // the channels of sigma.exr
-  View<const float> calibration_deg;     // of them the calibration's share in the angle, if it has one
+  View<const float> calibration_deg;     // the calibration's share in the angle, if sigma has one
 };
 
 // What is done to a band on its way from the solver to the files: colours, the calibration's share, and the
@@ -155,7 +155,7 @@ struct Prepared {
   pipeline::Photographs photographs;
   std::vector<std::string> warnings;
   pipeline::Fullness fullness;     // of the photographs as they were read
-  pipeline::SessionShifts shifts;  // of them too
+  pipeline::SessionShifts shifts;  // of the photographs too
   std::vector<int> numbers;        // of photographs without a rig, by light
 };
 

@@ -57,7 +57,7 @@ std::string name_of_led(int led) {
   return led == 0 ? std::string("the dark photograph") : fmt::format("LED {}", led);
 }
 
-// Of two shots of one LED, as they are solved together.
+// Whether two shots of one LED are alike enough to be solved together.
 bool is_alike(const Shot& shot, const Shot& lit) {
   return !shot.superseded_by && shot.polariser == lit.polariser && shot.iso == lit.iso;
 }
@@ -136,7 +136,7 @@ std::vector<ChoosableSolve> choosable(const Session& session, const Session& tod
   return solves;
 }
 
-// Of the level alone: a method of comparison stands between preview and fast.
+// The height of the level alone: a method of comparison stands between preview and fast.
 int height_of(const ChoosableSolve& solve) {
   const auto* level = std::ranges::find(kLevels, solve.level);
   if (level == kLevels.end()) return 1;

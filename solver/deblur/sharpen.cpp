@@ -228,8 +228,7 @@ class Sharpening {
     }
   }
 
-  // How far the correction turns each normal that was measured in this colour, squared, and what noise makes
-  // of that.
+  // How far the correction turns each normal measured in this colour, squared, and what noise makes of that.
   void measure(std::size_t colour) {
     const DeblurFilter& filter = filters_[colour];
     const Part from_around = convolved(squared(filter.weights), [&](int y, int x0, int n, float* to) {

@@ -61,7 +61,7 @@ struct Cells {
   explicit Cells(Size size) : normal(size, 3), weight(size) {}
 };
 
-/// Of one row of pixels: sums over cells, and counts.
+/// One row of pixels: its sums over cells, and counts.
 struct CellSums {
   std::vector<double> weight, right, down;
   std::int64_t pixels = 0, clamped = 0;

@@ -33,10 +33,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Changes of less than a thousandth of the value, or of next to nothing, are none.
 constexpr float kLeastChange2 = 1e-6f, kLeast2 = 1e-30f;
-// Of the square of a change that all neighbours share: it is taken to go along with the missing colour as if
-// seen to by so much.
+// The square of a change that all neighbours share is taken to go along with the missing colour as if seen to
+// by so much.
 constexpr float kSharedGoesAlong = 0.25f;
-// Of the mean square of the changes: less is no reason to prefer one neighbour to another.
+// A share of the mean square of the changes: less is no reason to prefer one neighbour to another.
 constexpr float kPreferFrom2 = 0.1f;
 // Squares of standard deviations within which a change counts as none, and as noise.
 constexpr float kNoChange2 = 4, kNoise2 = 9;

@@ -174,7 +174,8 @@ struct Spread {
   V along, across;
 };
 
-// Of the covariance G^-1 M G^-1, where M is `residuals.noise` and what noise that all readings share adds.
+// The spread by the covariance G^-1 M G^-1, where M is `residuals.noise` and what noise that all readings
+// share adds.
 template <std::size_t kPlanes, InUse kInUse>
 HWY_INLINE Spread spread_of(D d, const RowTask& task, const Found& found, Vector3 n,
                             const Residuals& residuals) {

@@ -37,7 +37,7 @@ struct Pull {
 constexpr Pull kHere = {0.24F, 0.94F}, kAround = {0.45F, 0.25F};
 constexpr Pull kHereOfRobust = {0.2F, 0.006F}, kAroundOfRobust = {0.13F, 0.17F};
 constexpr float kSteep = 0.53F, kSteepOfRobust = 0.16F;
-// Of a preview: degrees over the cube of the slope around, as light that does not reach a slope is taken for
+// Degrees of a preview over the cube of the slope around, as light that does not reach a slope is taken for
 // little light, and what is added to the albedo, as pale cloth fills it with light of its own.
 constexpr float kUnmasked_deg = 57, kUnmaskedOfBlack = 1.1F;
 // Lighter cloth is as light as this.
@@ -59,7 +59,7 @@ HWY_INLINE V square(V x) {
   return hn::Mul(x, x);
 }
 
-// Of lanes from an even one on, unless a vector is one lane.
+// Takes lanes by turns, from an even one on, unless a vector is one lane.
 template <typename T>
 HWY_INLINE T by_turns(T even, T odd, std::size_t lane) {
 #if HWY_TARGET == HWY_SCALAR

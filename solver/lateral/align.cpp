@@ -173,7 +173,7 @@ class Aligner {
     out_.sigma_rho(x, out_row_of(y)) = from_.sigma_albedo[colour_at(x, y)](site.x, row);
   }
 
-  // Of green, linearly between pixels.
+  // Green at a place, linearly between pixels.
   float green_at(int plane, Place at) const {
     const int x0 = static_cast<int>(at.x), y0 = static_cast<int>(at.y);
     const int x1 = std::min(x0 + 1, from_.image.width - 1), y1 = std::min(y0 + 1, from_.image.height - 1);

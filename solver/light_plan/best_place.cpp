@@ -14,7 +14,7 @@ namespace weft::solver {
 namespace {
 
 constexpr double kRing_deg = 7, kAlongRing_deg = 12;
-// Of the places that one more LED is tried in, every so many for each LED that is moved.
+// Stride among the places that one more LED is tried in, for each LED that is moved.
 constexpr std::size_t kMoveStride = 2;
 constexpr double kFirstStep_deg = 4, kLastStep_deg = 1;
 

@@ -220,7 +220,8 @@ class Scan {
     return scale.asDiagonal() * factor.solve(Eigen::MatrixXd::Identity(n, n)) * scale.asDiagonal();
   }
 
-  // Of all shared parameters, the rig's errors fitted with the lobe within what is known of them.
+  // The covariance of all shared parameters, the rig's errors fitted with the lobe within what is known of
+  // them.
   Eigen::MatrixXd fitted_with(const Eigen::MatrixXd& rig, Eigen::MatrixXd all) const {
     all.bottomRightCorner(rig.rows(), rig.cols()) += inverse_of(rig);
     return inverse_of(all);

@@ -72,7 +72,7 @@ class LightPlan {
   LightSet as_it_is() const;
   /// May be called from any thread.
   ForeseenSigma sigma_of(const LightSet& lights) const;
-  /// Of all LEDs, with each in turn taken from where it is to this place. May be called from any thread.
+  /// Sigmas with each LED in turn taken from where it is to this place. May be called from any thread.
   std::vector<ForeseenSigma> moved_to(const NearLight& place) const;
 
  private:

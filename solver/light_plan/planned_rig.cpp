@@ -27,7 +27,7 @@ std::array<double, 3> parts(Vec3 v) {
   return {v.x, v.y, v.z};
 }
 
-// Of the names of a LED that the covariance has (core/rig/lights.h).
+// Effects of the parameters of a LED that the covariance names (core/rig/lights.h).
 std::vector<Effect> effects_on(const NearLight& led, std::size_t number, Vec3 middle,
                                const std::vector<std::string>& names) {
   std::vector<Effect> effects;

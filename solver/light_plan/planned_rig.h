@@ -33,7 +33,7 @@ inline constexpr double kLeastGain = 0.005, kLeastTurn = 1e-4;
 /// Two directions across the one from a point to a LED.
 std::array<Vec3, 2> turns(Vec3 to_led);
 
-/// Of LEDs as they are typically known, each by itself.
+/// The covariance of LEDs as they are typically known, each by itself.
 std::vector<double> typical_led_covariance(const std::vector<NearLight>& leds, Vec3 middle_mm);
 
 /// What the covariance of a calibration says of them in the middle. Of a LED that it does not name what is

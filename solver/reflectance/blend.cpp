@@ -50,7 +50,7 @@ class JointSystem {
     left_ = std::max(of_share_ - dot(mixed_, taken_), 1e-9 * of_share_ + 1e-30);
   }
 
-  // Of both, to a right side of b and one of the share.
+  // Solves for both, to a right side of b and one of the share.
   Vec3 solved(Vec3 right, double right_share, double& share) const {
     const Vec3 alone = of_b_.solved(right);
     share = (right_share - dot(mixed_, alone)) / left_;

@@ -98,7 +98,7 @@ class GlossyTile {
   Vec3 normal_of(int x, int y) const {
     return {output_.normal[0](x, y), output_.normal[1](x, y), output_.normal[2](x, y)};
   }
-  // Of RGB that of the weighted sum.
+  // The albedo of RGB is that of the weighted sum.
   double albedo_of(int x, int y) const {
     if (input_.planes == 1) return output_.albedo[0](x, y) / unit_;
     double albedo = 0;
@@ -233,7 +233,7 @@ class GlossyTile {
     return true;
   }
 
-  // Of RGB with its readings in readings_.
+  // Writes a pixel, in RGB with its readings in readings_.
   void write_pixel(const SolvedPixel& pixel) {
     const int x = pixel.at.x, y = pixel.at.y;
     const BlendVariances& v = pixel.variances;

@@ -49,7 +49,7 @@ HWY_INLINE Frame frame_of(D d, Vector3 normal, V yarn_x, V yarn_y) {
   // Beside the yarn in the plane of the rig, times the normal.
   const Vector3 u = {hn::Mul(yarn_x, normal.z), hn::Mul(yarn_y, normal.z),
                      hn::Neg(hn::MulAdd(yarn_x, normal.x, hn::Mul(yarn_y, normal.y)))};
-  // Of an upright surface along the yarn nothing is left of u: the yarn lies in it as it is.
+  // Nothing is left of u on an upright surface along the yarn: the yarn lies in it as it is.
   const V squared = dot(u, u), least = number(d, 1e-12), zero = hn::Zero(d);
   const M is_upright = hn::Lt(squared, least);
   const V inverse = hn::Div(number(d, 1), hn::Sqrt(hn::Max(squared, least)));

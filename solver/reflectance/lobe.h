@@ -57,7 +57,7 @@ struct LitFrom {
   double light_half = 0;  ///< l . h
   double lobe_share = 1;  ///< s above, over the share of the diffuse part: 2 through parallel films
   int channel = kMixed;   ///< of the reading: 0 red to 2 blue
-  /// Of a weighted sum of the channels: f0 is that of the lobe.
+  /// A weighted sum of the channels: f0 is that of the lobe.
   static constexpr int kMixed = -1;
 
   LitFrom() = default;

@@ -135,7 +135,7 @@ class LanesFit {
     V* const elements[] = {&m.xx, &m.xy, &m.xz, &m.yy, &m.yz, &m.zz};
     for (std::size_t i = 0; i < 6; ++i) *elements[i] = hn::LoadU(d_, block_.normal_matrix[i].data() + at_);
     const Factor f = factor_of(d_, m);
-    // Of the inverse the diagonal, by the inverse of L.
+    // The diagonal of the inverse, by the inverse of L.
     const V l20 = hn::MulSub(f.l10, f.l21, f.l20);
     const V of_readings = hn::MulAdd(hn::Mul(f.l10, f.l10), f.inverse_d1,
                                      hn::MulAdd(hn::Mul(l20, l20), f.inverse_d2, f.inverse_d0));

@@ -35,7 +35,7 @@ class LobeBlock {
   void put(std::size_t pixel, std::span<const LobeReading> readings);
   /// Where the next fit begins.
   void begin_at(std::size_t pixel, Vec3 b);
-  /// Of another block, with what is solved of it.
+  /// Copies a pixel of another block, with what is solved of it.
   void copy(std::size_t pixel, const LobeBlock& other, std::size_t other_pixel);
   /// Takes a pixel's readings away: its cost becomes 0.
   void leave_out(std::size_t pixel);
@@ -79,9 +79,9 @@ struct BlockVariances {
   LobeBlock::Lane along_of_readings = {}, across_of_readings = {};
   LobeBlock::Lane along_of_lobe = {}, across_of_lobe = {};
 };
-/// Of every pixel as it stands, for lobes of the family of `lobe`, by which it was solved, that are one sigma
-/// off: (J^T W J)^-1 of the readings, and the squares of (J^T W J)^-1 J^T W (x of each - x of `lobe`) of the
-/// lobe, to first order. None is negative or no number.
+/// Variances of every pixel as it stands, for lobes of the family of `lobe`, by which it was solved, that are
+/// one sigma off: (J^T W J)^-1 of the readings, and the squares of (J^T W J)^-1 J^T W (x of each - x of
+/// `lobe`) of the lobe, to first order. None is negative or no number.
 void write_variances(const Lobe& lobe, std::span<const Lobe> one_sigma_off, const LobeBlock& block,
                      std::size_t pixels, BlockVariances& variances);
 

@@ -20,7 +20,7 @@ class LobeByLights {
   static constexpr std::size_t kErrors = 4;
 
   LobeByLights() = default;
-  /// Of a lobe as it was fitted; from at most 1000 of its pixels.
+  /// Changes of a lobe as it was fitted; from at most 1000 of its pixels.
   LobeByLights(const LobeSamples& samples, const LobeFit& fit, const LobeParameters& fitted);
 
   std::size_t errors() const { return change_.front().size(); }
@@ -28,7 +28,7 @@ class LobeByLights {
   std::span<const double> change_of(LobeParameter parameter) const {
     return change_[static_cast<std::size_t>(parameter)];
   }
-  /// Of the shared values, for a covariance of all errors, row by row.
+  /// The covariance of the shared values, for one of all errors, row by row.
   LobeCovariance covariance_of(std::span<const double> errors) const;
 
  private:

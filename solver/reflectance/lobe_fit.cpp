@@ -22,7 +22,7 @@ constexpr std::size_t kChunk = 64;
 constexpr int kMostTries = 7;
 // What pixels need to follow a lobe that moved a little.
 constexpr int kStepsARound = 2;
-// Of a principal axis: what is less is an error of rounding.
+// Variance of a principal axis: what is less is an error of rounding.
 constexpr double kLeastVariance = 1e-14;
 
 Shared values_of(const Lobe& lobe) {

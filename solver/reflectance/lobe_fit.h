@@ -63,7 +63,7 @@ using LobeCovariance = std::array<std::array<double, kLobeParameters>, kLobePara
 /// Those of a family: alpha and f0 where it has a lobe, `along` and `axis` where it has a yarn, `broad` and
 /// `broad_share` where it has two lobes.
 LobeParameters parameters_of(LobeFamily family);
-/// Of the family of a lobe, and its bend where the diffuse part `bends`.
+/// Those of a lobe's family, and its bend where the diffuse part `bends`.
 LobeParameters parameters_of(const Lobe& lobe, bool bends);
 
 /// A lobe with one of its values a little larger, and by how much: what slopes are taken from.
@@ -98,7 +98,7 @@ struct LobeFitOptions {
   int threads = 0;        ///< the result does not depend on them
 };
 
-/// Of fits that only decide where to begin, or which pixels go together.
+/// Settles fits that only decide where to begin, or which pixels go together.
 inline constexpr double kCoarselySettled = 1e-3;
 
 /// From `start`, whose b and yarn are one a pixel. Each pixel's b by Gauss-Newton for given shared values,
@@ -106,7 +106,8 @@ inline constexpr double kCoarselySettled = 1e-3;
 /// Lobe's ranges. The cost never rises.
 LobeFit fit_lobe(const LobeSamples& samples, LobeFit start, const LobeFitOptions& options);
 
-/// Of the fitted parameters of a fit, zero elsewhere; of a chi2 over 1 as large as the residuals say.
+/// The covariance of the fitted parameters of a fit, zero elsewhere; of a chi2 over 1 as large as the
+/// residuals say.
 LobeCovariance covariance_of(const LobeSamples& samples, const LobeFit& fit, const LobeParameters& fitted,
                              int threads);
 

@@ -39,7 +39,8 @@ class LobeReader {
   std::size_t count() const;
   /// Column and row of the tile. `readings` has count().
   void read(int x, int y, std::span<LobeReading> readings);
-  /// Of RGB one channel where `mixed` is what read() says: a reading has no weight where the sum has none.
+  /// Reads one channel of RGB where `mixed` is what read() says: a reading has no weight where the sum has
+  /// none.
   void read_plane(int x, int y, int plane, std::span<const LobeReading> mixed,
                   std::span<LobeReading> readings) const;
 

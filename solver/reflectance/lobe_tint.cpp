@@ -25,12 +25,12 @@ constexpr int kTintRounds = 4;
 constexpr double kSettledTint = 0.003;
 // Steps of a pixel that light is left out of, from where all lights had it.
 constexpr int kJudgeSteps = 5;
-// Of a tinted lobe: where two materials mirror in two colours one that fits neither is better than none.
+// Chi2 of a tinted lobe: where two materials mirror in two colours one that fits neither is better than none.
 constexpr double kMostTintedChi2 = 4;
 // Pixels of green that tell whether it is worth more, the chi2 from which it is anyway, and what it must win.
 constexpr std::size_t kGreenPixels = 1000;
 constexpr double kNearlyFits = 3, kGreenWins = 0.9;
-// Of the shares of two channels that follow the second of two lobes.
+// Difference of the shares of two channels that follow the second of two lobes.
 constexpr double kSplitByChannel = 0.5;
 // Standard errors of what the tint must win on left-out light.
 constexpr double kWinsBy = 3;
@@ -38,7 +38,7 @@ constexpr double kWinsBy = 3;
 // Values of the form, as LobeParameter has them but for f0, and then three f0.
 constexpr std::array<LobeParameter, 4> kForm = {LobeParameter::kLogAlpha, LobeParameter::kLogAlong,
                                                 LobeParameter::kAxis, LobeParameter::kBend};
-// Of the albedo of all channels where a channel seems to have none.
+// Share of the albedo of all channels where a channel seems to have none.
 constexpr double kLeastChannel = 1e-3;
 // The form and a tint for each channel.
 constexpr int kTintValues = static_cast<int>(kForm.size()) + 3;
@@ -110,7 +110,7 @@ class TintEquations {
     chi2_ = freedom > 0 ? 2 * cost / freedom : 1;
   }
 
-  // Of the three f0, from noise, from the lights as `errors` has them, and from their drift.
+  // The covariance of the three f0, from noise, from the lights as `errors` has them, and from their drift.
   Eigen::Matrix3d covariance(std::span<const double> errors) const {
     TintMatrix information = information_;
     for (Eigen::Index p = 0; p < information.rows(); ++p) information(p, p) += 1e-9;
@@ -277,7 +277,8 @@ class TintSearch {
         options_(options),
         is_mosaic_(all_.samples.of(0).front().from.channel != LitFrom::kMixed) {}
 
-  // Of pixels of one material, whose normals are as `fit` has them; `grey` was measured without a tint.
+  // Measures a tint on pixels of one material, whose normals are as `fit` has them; `grey` was measured
+  // without a tint.
   std::optional<MeasuredLobe> tinted(const Material& material, LobeFit fit, const MeasuredLobe& grey) const {
     const bool bends = fit.lobe.bend != 0;
     std::optional<LobeTint> tint = measure_tint(fit, bends, material.channels, options_);

@@ -32,7 +32,7 @@ struct ChannelSamples {
 
 struct TintOptions {
   std::array<double, 3> weights = kLuminance;  ///< of the channels in `f0`; none below 0, their sum is 1
-  /// Of the lights, in the order of LobeByLights; empty where it is not known. Their drift is added.
+  /// Errors of the lights, in the order of LobeByLights; empty where it is not known. Their drift is added.
   std::span<const double> light_errors = {};
   int threads = 0;
 };
@@ -57,7 +57,7 @@ void find_tints(const LobeSamples& samples, const std::vector<Vec3>& start, cons
 /// A channel with fewer leaves a lobe without a tint.
 inline constexpr std::size_t kLeastTintPixels = 100;
 inline constexpr double kTintSigmas = 3;  ///< of is_off()
-/// Of a ratio: light between yarns and what no family has are not the same in light and dark channels.
+/// Share of a ratio: light between yarns and what no family has are not the same in light and dark channels.
 inline constexpr double kTintModelShare = 0.04;
 /// How much bluer or redder a LED may be than calibrated, a share of each channel.
 inline constexpr double kColourDrift = 0.002;

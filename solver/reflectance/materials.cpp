@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kSplitPixels = 800, kLeastTrialPixels = 60;
 // Rounds of fitting two lobes and of telling which pixel is of which.
 constexpr int kMostRounds = 6;
-// Of the cost of one lobe for all: a first split that saves less leads nowhere.
+// Share of the cost of one lobe for all: a first split that saves less leads nowhere.
 constexpr double kPromising = 0.7;
 const Lobe kSharp = {.family = LobeFamily::kGgx, .alpha = 0.15, .f0 = 0.05};
 const Lobe kBroad = {.family = LobeFamily::kGgx, .alpha = 0.45, .f0 = 0.05};
@@ -28,13 +28,13 @@ constexpr double kSettledShare = 0.01;
 // Where materials fade into each other at most so many pixels are left to neither: those that are worst
 // explained, by a cost over their degrees of freedom from kMixedFrom on.
 constexpr double kMostMixed = 0.35, kMixedFrom = 2;
-// Of these so many must be blends of both.
+// Share of these that must be blends of both.
 constexpr double kLeastBlends = 0.7;
 
 using Sides = std::vector<std::uint8_t>;  // 0 or 1, or kNeither, by pixel
 constexpr std::uint8_t kNeither = 2;
 
-// Of the families that were tried the one that fits best; Lambert's law where it fits.
+// The best fit of the families that were tried; Lambert's law where it fits.
 const LobeCandidate& best_of(const MeasuredLobe& measured) {
   if (measured.refusal == LobeRefusal::kLambertFits) return measured.candidates.front();
   return *std::ranges::min_element(measured.candidates, {}, &LobeCandidate::chi2);

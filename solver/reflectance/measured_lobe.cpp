@@ -40,7 +40,7 @@ bool has_yarn(const Lobe& lobe) {
   return lobe.family == LobeFamily::kAnisotropicGgx;
 }
 
-// Of each pixel the solution that costs less.
+// Keeps the solution of each pixel that costs less.
 void keep_cheaper(const LobeFit& other, LobeFit& fit) {
   for (std::size_t i = 0; i < fit.b.size(); ++i) {
     if (!(other.cost[i] < fit.cost[i])) continue;
@@ -198,7 +198,7 @@ LobeRefusal refusal_of(const LobeFit& fit, double lambert_chi2, AlbedoScale scal
   return LobeRefusal::kNone;
 }
 
-// Of a yarn, and not of GGX under another name.
+// Whether a yarn's lobe is GGX under another name.
 bool is_round(const Lobe& lobe) {
   return lobe.family == LobeFamily::kAnisotropicGgx && lobe.along > kMostAlong && lobe.along < 1 / kMostAlong;
 }
@@ -346,7 +346,7 @@ bool is_certain_of_two(const MeasuredLobe& measured) {
          measured.sigma_share < kMostSigmaShare * lesser;
 }
 
-// Of the family that was taken; where none was, of all.
+// Least chi2 of the family that was taken; where none was, of all.
 double least_chi2(const MeasuredLobe& one) {
   const LobeCandidate* least = &one.candidates.front();
   for (const LobeCandidate& each : one.candidates) {

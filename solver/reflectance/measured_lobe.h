@@ -52,7 +52,7 @@ struct MeasuredLobe {
   LobeFit fit;  ///< of `lobe`; empty where it is refused
   double sigma_alpha = 0, sigma_f0 = 0, sigma_along = 0, sigma_axis = 0;  ///< alpha: relative; axis: radians
   double sigma_broad = 0, sigma_share = 0;  ///< of two lobes: relative, and of the share
-  /// Of all of the parameters: the sigmas are the roots of its diagonal.
+  /// Covariance of all of the parameters: the sigmas are the roots of its diagonal.
   LobeCovariance covariance = {};
   double correlation = 0;  ///< of log alpha and f0
   LobeByLights by_lights;  ///< what errors of the lights make of `lobe`

@@ -182,7 +182,7 @@ class Search {
     for (std::size_t j = 0; j < lights_.size(); ++j) {
       if (j != k && placed_[j]) m += lights_[j] * lights_[j].transpose();
     }
-    // Of lights on one ring the third direction is known worst; it must not blow up.
+    // The third direction of lights on one ring is known worst; it must not blow up.
     m += 1e-3 * m.trace() * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d of_k = m.inverse() * lights_[k];
     Image<float> predicted({inner_.width(), inner_.height()});

@@ -22,7 +22,7 @@ struct ClothShift {
   struct Displacement {
     double x = 0, y = 0;
   };
-  /// Of what lies `x`, `y` pixels right of and below the frame's centre.
+  /// Displacement of what lies `x`, `y` pixels right of and below the frame's centre.
   Displacement at(double x, double y) const { return {dx_px + turn * y, dy_px - turn * x}; }
   friend bool operator==(const ClothShift&, const ClothShift&) = default;
 };
@@ -58,8 +58,8 @@ inline constexpr double kModelShiftOfShadow_px = 0.7;
 /// smooth and plain cloth that was shaken in every shot 0.50 to 0.76.
 inline constexpr double kExplainedByMovement = 0.7;
 
-/// Of more shots, each is solved by itself against b as all of them have it, so that the work grows with
-/// their number: what one says of another by way of b is then a tenth of what it says of itself, and less.
+/// Each of more shots is solved by itself against b as all of them have it, so that the work grows with their
+/// number: what one says of another by way of b is then a tenth of what it says of itself, and less.
 inline constexpr int kMostTogether = 32;
 
 /// Measures shift and turn of every shot on tiles of one frame (solver/sample_tiles.h): what aligns, in the

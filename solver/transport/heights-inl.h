@@ -20,7 +20,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using LaneTag = hn::CappedTag<float, kMostLanes>;
 using Lanes = hn::Vec<LaneTag>;
 
-// Of the same point beside each of the pixels from `from` on.
+// Heights of the same point beside each of the pixels from `from` on.
 HWY_INLINE Lanes height_at(const float* from, std::ptrdiff_t stride, const PointBetween& point) {
   const LaneTag d;
   const float* above = from + point.upper_left;

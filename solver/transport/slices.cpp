@@ -124,7 +124,7 @@ namespace {
 
 HWY_EXPORT(gather_slices);
 
-// Of directions, and of steps.
+// Counts of directions, and of steps.
 constexpr int kFewest = 4, kMost = 64;
 constexpr double kLeastStep_px = 0.5;
 

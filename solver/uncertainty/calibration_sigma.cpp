@@ -173,7 +173,7 @@ std::vector<double> CalibrationSigmas::light_errors_at(int x, int y) const {
     const Vec3 direction = field_->at(parameter.light, 0, x, y).direction;
     const double distance = (leds[parameter.light].position_mm.z - field_->cloth_height_mm()) / direction.z;
     const Eigen::Index first = kErrors * static_cast<Eigen::Index>(parameter.light);
-    // Of a surface that faces the light the cosine does not change.
+    // The cosine of a surface that faces the light does not change.
     change(first, p) = log_derivative(parameter, distance * direction, direction, x, y);
     if (parameter.kind != Kind::kPosition) continue;
     const Eigen::Vector3d l = eigen(direction);
