@@ -33,7 +33,7 @@ TargetSettings paper_in(const Scene& scene) {
   return paper == scene.targets.end() ? plain : *paper;
 }
 
-/// Of a row of patches, clockwise from the upper left of the first.
+/// The corners of a row of patches, clockwise from the upper left of the first.
 std::string corners_px(const CameraModel& camera, const TargetSettings& scale,
                        const GreyScaleSettings& pattern) {
   const auto patches = static_cast<double>(pattern.reflectances.size());

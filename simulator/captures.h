@@ -14,7 +14,7 @@ namespace weft::simulator {
 
 /// What is taken of a rig.
 struct CapturesOptions {
-  /// Of capture_parts(); empty: all that the scene has what is needed for.
+  /// Names from capture_parts(); empty: all that the scene has what is needed for.
   std::vector<std::string> parts;
   std::int64_t seed = 1;      ///< of the boards' places, the tape's errors and the frames' noise
   int boards = 15;            ///< 1 to 99

@@ -71,7 +71,7 @@ struct Exposure {
   PassKind passes = kOfShots;
 };
 
-/// Of the shots that are taken first.
+/// The films' state in the shots that are taken first.
 Polariser first_state(const FilmSettings& films) {
   switch (films.states) {
     case FilmStates::kNone:

@@ -21,7 +21,7 @@ class FieldCurvature {
  public:
   FieldCurvature(const FieldSettings& settings, const CameraModel& camera);
 
-  /// Of the disc; beyond the frame's farthest corner it grows no more.
+  /// The disc's diameter grows no more beyond the frame's farthest corner.
   double diameter_px(double x, double y) const;
   /// Pixels that light comes from beyond those that are filled.
   int radius() const { return discs_.back().radius; }

@@ -458,7 +458,7 @@ class Bounds {
   }
   double albedo() const { return *std::max_element(albedo_.begin(), albedo_.end()); }
   double response() const { return 1 + kMostDeviation * scene_.camera.defects.response_percent / 100; }
-  /// Of a mesh's triangles, whose sides along x and y may both be as steep as the surface.
+  /// The steepest slope of a mesh's triangles, whose sides along x and y may both be as steep as the surface.
   double mesh_slope() const { return is_plane_ ? slope_ : std::sqrt(2) * slope_; }
   bool is_uniform() const { return is_plane_ && !scene_.material.print.albedo && scene_.targets.empty(); }
   bool spills() const { return sample_ > 1 && scene_.camera.bloom.share > 0; }
@@ -484,17 +484,17 @@ class Bounds {
     const double n = rig_.sensor.electrons_at_white, r = rig_.sensor.read_noise_electrons;
     return change * n / std::sqrt(signal * n + r * r);
   }
-  /// Of charge that may be added to none at all: the brighter signal is at least the change.
+  /// Bounds charge that may be added to none at all: the brighter signal is at least the change.
   EffectBound whole(double charge, const std::string& why) const {
     const double most = std::min(charge * (spills() ? 1 + scene_.camera.bloom.share : 1), 1.0);
     return {in_sigma(most, most), fmt::format(fmt::runtime(why), most)};
   }
-  /// Of light, which photosites count more or less of.
+  /// Bounds a change of light, which photosites count more or less of.
   EffectBound change(double light, const std::string& why) const { return whole(light * response(), why); }
   EffectBound all(const std::string& why) const { return whole(sample_, why); }
   EffectBound glossy() const { return all("what the material mirrors cannot be bounded cheaply"); }
-  /// Of the same share of any signal: most sigma where the signal is largest. Blur may mix what has grown
-  /// with what has shrunk: the brighter signal is at least 1 - share of the largest.
+  /// Bounds a change by the same share of any signal: most sigma where the signal is largest. Blur may mix
+  /// what has grown with what has shrunk: the brighter signal is at least 1 - share of the largest.
   EffectBound share(double of_signal, const std::string& why) const {
     const std::string said = fmt::format(fmt::runtime(why), of_signal);
     if (of_signal == 0) return {0, said};

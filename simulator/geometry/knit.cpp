@@ -14,7 +14,7 @@ constexpr double kWidening = 0.22;
 constexpr double kHalfHeight = 1.15;
 constexpr double kDepth = 0.35;
 
-/// Of one loop, around the one over the origin: those that can be on top there.
+/// Courses and wales around the loop over the origin whose loops can be on top there.
 constexpr int kCoursesAround = 3;
 constexpr int kWalesAround = 2;
 

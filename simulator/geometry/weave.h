@@ -72,7 +72,7 @@ class Weave {
   explicit Weave(const GeometrySettings& geometry);
   SurfacePoint at(double x_mm, double y_mm) const;
   HeightRange heights_mm(const Area& anywhere = {}) const;
-  /// Of the draft; with fibres, its multiple of at least kYarnsUntilFibresRepeat yarns.
+  /// The draft's period; with fibres, its multiple of at least kYarnsUntilFibresRepeat yarns.
   std::optional<Period> period_mm() const { return Period{period_x_mm(), period_y_mm()}; }
   double steepest_slope() const;
 

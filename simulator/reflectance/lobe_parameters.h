@@ -15,8 +15,8 @@ struct LobeParameters {
   Rgb f0 = {};
 };
 
-/// Of GGX, of GGX with two alphas, of Beckmann and of the cloth lobe. The other models have no lobe, or one
-/// whose parameters are others: none.
+/// The parameters of GGX, GGX with two alphas, Beckmann and the cloth lobe. The other models have no lobe,
+/// or one whose parameters are others: none.
 std::optional<LobeParameters> lobe_parameters_of(const Reflectance& model);
 
 }  // namespace weft::simulator

@@ -38,7 +38,7 @@ struct TranslucencySettings {
   std::optional<double> warp_share, weft_share;      ///< instead of `share`
   std::optional<double> warp_mean_mm, weft_mean_mm;  ///< instead of `mean_mm`
 
-  /// Of the warp and the weft; cloth that is not woven counts as warp.
+  /// The warp and the weft; cloth that is not woven counts as warp.
   std::array<YarnTranslucency, 2> yarns() const {
     return {{{warp_share.value_or(share), warp_mean_mm.value_or(mean_mm)},
              {weft_share.value_or(share), weft_mean_mm.value_or(mean_mm)}}};
@@ -100,7 +100,7 @@ struct LightSettings {
   double led_radius_mm = 0.75;         ///< finite_led
   double drift = 0.003;                ///< led_drift: what the last shot's LED has lost against the first's
   double flicker = 0.001;              ///< led_drift: standard deviation of a shot's brightness, relative
-  /// Of what a white surface at the table's centre that faces the LED reflects, evenly from all sides.
+  /// Shares of what a white surface at the table's centre that faces the LED reflects, evenly from all sides.
   double stray = 0.002;    ///< stray: by way of the rig
   double ambient = 0.001;  ///< ambient: from the room, in units of the brightest LED
   /// LED 1 is the first of the first ring; `leds` follow the rings. With neither there are the

@@ -93,7 +93,7 @@ class Target {
   /// kBadData names a setting that is out of its range.
   static Result<Target> make(const TargetSettings& settings, std::int64_t seed, int number);
 
-  /// Of the plane, towards the side that is printed.
+  /// The plane's normal, towards the side that is printed.
   Vec3 normal() const { return normal_; }
   /// A point of the plane.
   Vec3 place_mm(double u_mm, double v_mm) const;

@@ -88,7 +88,7 @@ struct CellPlace {
   double u, v;  ///< along the columns and the rows, in [0, 1] inside the cell
 };
 
-/// Of a point on the triangle from `corner` along the edges e1 and e2.
+/// The place of a point on the triangle from `corner` along the edges e1 and e2.
 CellPlace place_in_triangle(Vec3 point, Vec3 corner, Vec3 e1, Vec3 e2) {
   const Vec3 normal = cross(e1, e2), p = point - corner;
   const double scale = 1 / dot(normal, normal);

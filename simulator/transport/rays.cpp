@@ -33,8 +33,8 @@ struct CirclePoint {
   float cosine, sine;
 };
 
-/// Of a turn in [0, 1), but for its sign, to 2e-7: Taylor series of the half angle, which stays within a
-/// quarter turn. Unlike the library's functions, vector instructions in a loop.
+/// Cosine and sine of a turn in [0, 1), but for their sign, to 2e-7: Taylor series of the half angle, which
+/// stays within a quarter turn. Unlike the library's functions, vector instructions in a loop.
 CirclePoint circle_point(float turn) {
   const float a = 3.14159265f * (turn - 0.5f), q = a * a;
   const float s =
@@ -59,7 +59,7 @@ void aim(const RaySettings& settings, Scramble scramble, Vec3 start_mm, Vec3 axi
   const Frame f = frame_about(axis);
   const auto reach = static_cast<float>(settings.reach_mm), longest = static_cast<float>(longest_mm);
   for (std::size_t done = 0; done < count; done += kBlock) {
-    // Of constant size and local, so that the compiler sees whole vectors that overlap nothing.
+    // Local and of constant size, so that the compiler sees whole vectors that overlap nothing.
     float x[kBlock], y[kBlock], z[kBlock], length[kBlock];
     for (std::size_t k = 0; k < kBlock; ++k) {
       const SquarePoint p = sobol(static_cast<std::uint32_t>(done + k), scramble);

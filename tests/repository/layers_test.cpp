@@ -257,7 +257,7 @@ TEST(Layers, LetNoSubjectNameOneThatComesLater) {
     for (const std::string_view named : layer.may_include) {
       const std::size_t other = subject_of(named);
       if (other == kSubjects.size() || other <= own) continue;
-      // Of a later one the mathematics alone.
+      // A later one's mathematics alone may be named.
       EXPECT_NE(named, kSubjects[other]) << layer.folders.front();
       EXPECT_FALSE(starts_with_any(named, upper_half_of(kSubjects[other]))) << layer.folders.front();
     }

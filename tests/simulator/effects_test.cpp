@@ -187,7 +187,7 @@ TEST(Effects, InterreflectionLightensDeepClothMoreThanSmooth) {
     const Rendering with = render(scene, kCentre);
     gain[family == Family::kDeep] = sum_of(with.readings, 1) / sum_of(without.readings, 1) - 1;
   }
-  // Of an even white sky the hidden share is 0.009 and 0.21, and half of the light is absorbed each time.
+  // The hidden share of an even white sky is 0.009 and 0.21, and half of the light is absorbed each time.
   EXPECT_GT(gain[0], 0.001);
   EXPECT_LT(gain[0], 0.009);
   EXPECT_GT(gain[1], 0.04);

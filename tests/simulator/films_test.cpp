@@ -52,7 +52,7 @@ Session session_of(const Scene& scene, const fs::path& folder) {
   return session ? *session : Session();
 }
 
-// Of scattered light, between yarns and by way of the rig too, a quarter passes in either state; of mirrored
+// A quarter of scattered light, between yarns and by way of the rig too, passes in either state; of mirrored
 // light half passes parallel films and a hundredth of that crossed ones.
 TEST(Films, LetScatteredAndMirroredLightThroughByTheirOwnShares) {
   Scene scene = satin_scene();

@@ -95,7 +95,7 @@ TEST_F(BadPhotographs, AMaskOfAnotherSizeIsRefused) {
 
 TEST_F(BadPhotographs, AMaskIsReadAsPeopleMakeThem) {
   write({});
-  // Of half the picture: the count 1 on 0, alpha on black, alpha on white, in capitals.
+  // Masks of half the picture: the count 1 on 0, alpha on black, alpha on white, in capitals.
   struct Made {
     const char* name;
     std::array<float, 2> color, alpha;  // outside and inside

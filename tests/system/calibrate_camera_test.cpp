@@ -312,7 +312,7 @@ TEST_F(CalibrateCamera, LeavesOutWhatIsNotTrueOfItsOwnTable) {
   EXPECT_TRUE(outcome->calibration.lights);
 }
 
-// Of Bouguet's camera calibration toolbox; its page gives these values and uncertainties for them.
+// Photographs of Bouguet's calibration toolbox; its page gives these values and uncertainties for them.
 TEST(RealBoards, GiveThePublishedLensFromTwentyPhotographsOfACheckerboard) {
   const char* shared = std::getenv("WEFT_SHARED_DATA");
   if (shared == nullptr) GTEST_SKIP() << "WEFT_SHARED_DATA is not set";

@@ -174,7 +174,7 @@ TEST_F(CalibrationCheck, PrintsItsTableAndEndsWithTheCodeOfBadDataWhereItRefuses
   EXPECT_EQ(bad.exit_code, 65) << bad.error;
   EXPECT_THAT(bad.output, testing::AllOf(HasSubstr("Refused"), HasSubstr("slope gain")));
   EXPECT_TRUE(is_there(root_ / "bad check" / "check.html")) << "the report says why";
-  // Of a rig that moved, too.
+  // A rig that moved is refused, too.
   simulate(with_table_lower(), "lower.weft");
   const std::string first = (root_ / "rig" / "first").string();
   const auto session = [&](const char* name) {

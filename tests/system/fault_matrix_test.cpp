@@ -4,8 +4,8 @@
 namespace weft {
 namespace {
 
-// Some faults of each kind, every one once, the fourth while films and the light below are photographed: all
-// of them, a thousand runs, are the soak.
+// Some faults of each kind, every one once, the fourth while films and the light below are photographed:
+// all of them, a thousand runs, are the soak.
 void expect_each_goes_right(const std::vector<std::string>& faults) {
   test::expect_no_run_goes_wrong(static_cast<int>(faults.size()), static_cast<int>(faults.size()), faults);
 }

@@ -44,7 +44,8 @@ double largest_half_steps(const fs::path& tested, const fs::path& truth) {
   return largest;
 }
 
-/// Of two maps of one channel, whatever else their files say; -1 where they cannot be compared.
+/// Counts pixels where two maps of one channel differ, whatever else their files say; -1 where they cannot be
+/// compared.
 int differing_pixels(const fs::path& tested, const fs::path& truth) {
   const Result<LoadedImage> a = read_image(tested), b = read_image(truth);
   if (!a || !b || a->info.size != b->info.size) return -1;

@@ -124,7 +124,7 @@ TEST_F(Sameness, OfWholeRunsOfTheProgram) {
     arguments.insert(arguments.end(), division.begin(), division.end());
     const Outcome run = run_weft(arguments);
     EXPECT_EQ(run.exit_code, 0) << run.error;
-    // Of all files only solve.json and the report say how long it took.
+    // Only solve.json and the report, of all files, say how long it took.
     edit_json(work_ / name / "solve.json", [](Json& document) {
       EXPECT_EQ(document.at("taken").erase("seconds") + document["taken"].erase("parts_s"), 2U);
     });

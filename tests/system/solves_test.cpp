@@ -178,7 +178,7 @@ TEST_F(Solves, WithoutALedThatTheReportSaidToLeaveOutAreTheCurrentOnes) {
       if (shot["led"] == 2 || shot["led"] == 6) shot["led"] = 8 - shot["led"].get<int>();
     }
   });
-  // Of the first warning that names a command; empty: none does.
+  // The remedy of the first warning that names a command; empty: none does.
   const auto remedy = [&] {
     const Json solve = json_of("solve cloth.weft");
     for (const Json& warning : solve["warnings"]) {

@@ -25,7 +25,7 @@ simulator::Scene small_scene(int width) {
 }
 
 fs::path fresh_folder() {
-  // Of this process alone, and gone with it.
+  // A folder of this process alone, and gone with it.
   struct Own {
     const fs::path path = fs::path(testing::TempDir()) / ("weft_rig_" + std::to_string(getpid()));
     ~Own() {

@@ -37,7 +37,7 @@ struct ObjectFacts {
 };
 Bytes object_info(const ObjectFacts& facts);
 
-/// Of the one card.
+/// Describes the one card.
 Bytes storage_info();
 
 }  // namespace weft::virtual_rig::ptp

@@ -59,7 +59,7 @@ TEST(RigServer, ScansAClothAndShowsItsFrames) {
   EXPECT_THAT(picture.head, HasSubstr("image/png"));
   EXPECT_THAT(picture.body, StartsWith("\x89PNG"));
   const Json histogram = ask(port, "GET", "/api/v1/sessions/first/frames/2/histogram").json();
-  // Of 640 columns those from x = 597 on are full, a share that green, on both rows, has as red and blue do.
+  // The columns from x = 597 on, of 640, are full: green, on both rows, has the same share as red and blue.
   for (const char* channel : {"red", "green", "blue"}) {
     EXPECT_EQ(histogram[channel]["bins"].size(), 64U);
     EXPECT_NEAR(histogram[channel]["clipped"].get<double>(), 43.0 / 640, 2.0 / 640) << channel;

@@ -77,7 +77,7 @@ TEST(ColorFit, FindsItUnderALampThatStandsToOneSide) {
   EXPECT_TRUE(fit->left_out.empty());
 }
 
-// Of a camera whose channels no matrix takes to the chart's colours.
+// Samples of a camera whose channels no matrix takes to the chart's colours.
 std::vector<ChartSample> uneven_samples() {
   std::vector<ChartSample> samples = samples_of(1, 0);
   for (std::size_t i = 0; i < samples.size(); ++i) {

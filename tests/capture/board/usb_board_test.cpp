@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A board that is a USB device: the names it has, and coming back under another one. What libserialport reads
-// of it below /dev and /sys stands in a folder (virtual_rig/terminal/usb_terminal.h).
+// A board that is a USB device: the names it has, and coming back under another one. What libserialport
+// reads of it below /dev and /sys stands in a folder (virtual_rig/terminal/usb_terminal.h).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -246,7 +246,7 @@ TEST(RoughnessMips, WidenTheFinestLevelOfSamplesAndLeaveThatOfFacets) {
         mips_of(bowl, {.rule = MipRule::kClean, .pixels = pixels, .alpha = 0.1, .finest = 0}).front());
   };
   EXPECT_EQ(finest(PixelMeaning::kFacet).lobe(4, 4, 0), 0.1F);
-  // Of four samples across a pixel, 1 / 16 of the variance is missing.
+  // Four samples across a pixel miss 1 / 16 of the variance.
   const double variance = bend * bend / 12 * (1 - 1.0 / 16);
   EXPECT_NEAR(finest(PixelMeaning::kSample).lobe(4, 4, 0), std::sqrt(0.01 + variance), 1e-6);
 }

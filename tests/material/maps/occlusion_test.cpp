@@ -25,7 +25,6 @@ Image<float> heights_of(Size size, const Heights& height) {
   return map;
 }
 
-/// Of heights in pixels.
 Occlusion occlusion_of(const Image<float>& height_px, OcclusionOptions options = {}) {
   options.mm_per_pixel = 1;
   Result<Occlusion> found = occlusion(height_px.plane(), options);

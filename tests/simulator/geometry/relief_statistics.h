@@ -81,7 +81,7 @@ class ReliefGrid {
     return steepest;
   }
 
-  /// Of one azimuth: the integral of max(0, n . w) cos(e) de over elevations e above the horizon. Its mean
+  /// One azimuth's integral of max(0, n . w) cos(e) de over elevations e above the horizon. Its mean
   /// over all azimuths, doubled, is 1 where nothing is hidden.
   double openness(Vec3 n, int i, int j, double dx, double dy) const {
     const double ahead = n.x * dx + n.y * dy;

@@ -290,7 +290,7 @@ TEST(FibreCones, MirrorLightIntoAConeAboutThemselves) {
     const auto reflected = [&](double theta_deg) {
       const double theta = radians(theta_deg), phi = radians(phi_deg);
       const Vec3 v = {std::sin(theta), std::cos(theta) * std::sin(phi), std::cos(theta) * std::cos(phi)};
-      // Of the lobe what depends on more than theta_h taken off: cos^2 theta_d and what fibres hide.
+      // The lobe without what depends on more than theta_h: cos^2 theta_d and what fibres hide.
       const double theta_d = radians((theta_deg - 30) / 2);
       return green(fibres, kBlack, l, v) * std::cos(theta_d) * std::cos(theta_d) * (l.z + v.z - l.z * v.z);
     };

@@ -73,7 +73,7 @@ TEST(Gloss, IsTheSameForIntensitiesOfAnyScaleWhereTheAlbedoHasNone) {
     EXPECT_LT(mean_error_deg(maps), 0.1) << "times " << scale;
     const solver::MeasuredLobe& lobe = facts.gloss->lobes.front();
     EXPECT_NEAR(lobe.lobe.alpha, kSilk.alpha, 0.01) << "times " << scale;
-    // Of the weighted sum of the channels.
+    // 0.083 is the weighted sum of the albedo's channels.
     EXPECT_NEAR(lobe.lobe.f0 / lobe.median_albedo, 0.05 / 0.083, 0.03) << "times " << scale;
     EXPECT_NEAR(maps.albedo(100, 80, 0) * scale, 0.1, 0.003) << "times " << scale;
   }

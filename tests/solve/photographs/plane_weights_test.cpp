@@ -61,7 +61,7 @@ double mean_square(const Photographs& photographs, const solver::Method& method)
   return sum / static_cast<double>(kNoisySize.pixels());
 }
 
-// Of least squares over all thirty readings, each over its variance: the trace of the inverse of
+// The bound of least squares over all thirty readings, each over its variance: the trace of the inverse of
 // sum a_c^2 / v_c times sum_k l l^T, across the normal. Rings of lights have no products of x and y.
 double bound() {
   double information = 0, xx = 0;

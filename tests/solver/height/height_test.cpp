@@ -55,7 +55,7 @@ TEST(Height, LosesHardlyAnythingToOneDegreeOfNoise) {
   const double before = rms_error_px(clean.height_mm.plane(), weave_with_folds);
   const double after = rms_error_px(noisy.height_mm.plane(), weave_with_folds);
   EXPECT_LT(after - before, 0.02) << before << " px without, " << after << " px with noise";
-  // Of the noise, what no surface can have is left: a good part of the 0.012 to 0.03 of each slope.
+  // The noise that no surface can have is left: a good part of the 0.012 to 0.03 of each slope.
   EXPECT_GT(noisy.slope_residual_rms, 0.005);
   EXPECT_LT(noisy.slope_residual_rms, 0.03);
 }

@@ -110,7 +110,7 @@ TEST(Multigrid, SolvesAThinSpiralThatFillsTheFrame) {
       ++turns;
     }
   }
-  // Of second degree, where the mean of two slopes is the step exactly.
+  // A surface of second degree, where the mean of two slopes is the step exactly.
   const auto saddle = [](double u, double v) {
     return test::SurfacePoint{0.01 * u * u - 0.008 * v * v, 0.02 * u, -0.016 * v};
   };

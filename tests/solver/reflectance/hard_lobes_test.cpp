@@ -195,7 +195,7 @@ TEST(HardLobe, IsFoundFromStartsThatAreNoNumbers) {
   EXPECT_LT(mean_angle_deg(found.fit.b, cloth.b), 0.3);
 }
 
-// Of such steep pixels many half-vectors lie below the horizon, and many lights too.
+// Many half-vectors of such steep pixels lie below the horizon, and many lights too.
 TEST(HardLobe, IsFoundWhereHalfVectorsLieBelowTheHorizon) {
   for (const double albedo : {0.4, 0.05}) {
     const PixelTruth cloth =

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kFramePixels = 480;
 const Lobe kSatin = {.family = LobeFamily::kGgx, .alpha = 0.25, .f0 = 0.04};
-// Of alpha: what half a percent of each LED does to it, and more.
+// What half a percent of each LED does to alpha, and more.
 constexpr double kSigmaAlpha = 0.01;
 
 // A fit of one lobe to pixels of which every fourth lies in the same quarter, alpha of each times its factor.

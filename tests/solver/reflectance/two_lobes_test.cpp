@@ -49,7 +49,7 @@ TEST(TwoLobes, OfDarkClothAreFoundAndGiveItsAlbedo) {
   }
 }
 
-// Of clear cases every family stays what it is by itself.
+// Every family stays what it is by itself in clear cases.
 TEST(TwoLobes, AreNotMadeOfOne) {
   const std::array<Lobe, 3> truths = {
       Lobe{.family = LobeFamily::kGgx, .alpha = 0.15, .f0 = 0.04},

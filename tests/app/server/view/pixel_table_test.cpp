@@ -85,7 +85,7 @@ TEST_F(AskedSolve, MeasuresALineInMillimetresWithItsDeviation) {
   ASSERT_TRUE(layers) << layers.error().message();
   Result<Calibration> calibration = read_calibration(session() / "calibration");
   ASSERT_TRUE(calibration) << calibration.error().message();
-  // Of a focal length with one percent the length has one.
+  // A deviation of one percent in the focal length gives the length one percent.
   const double fx = calibration->camera->fx, sigma = 0.01 * fx;
   calibration->camera_covariance = ParameterCovariance{{"fx"}, {sigma * sigma}};
   const Result<Json> line =
