@@ -192,7 +192,7 @@ NearLight light_of(const LedEntry& led) {
   return light;
 }
 
-// Of the file's folder.
+// Relative paths are of the file's folder.
 void lay_paths(Rig& rig) {
   for (fs::path* path : {&rig.scan.calibration, &rig.scan.sessions, &rig.scan.copy, &rig.daemon.token,
                          &rig.daemon.look_token, &rig.daemon.virtual_control, &rig.daemon.state})

@@ -32,7 +32,7 @@ constexpr std::array<const char*, 3> kKindNames = {"normal", "albedo",
 // A mean that falls to less than half by turning y round is no chance from here on.
 constexpr double kTellsFlip_deg = 1;
 
-// Of two maps or of two solves.
+// The angles between two maps or two solves.
 std::string angles_in_words(const auto& c) {
   return fmt::format("{} pixels: mean {:.4f}, median {:.4f}, 95 % under {:.4f}, max {:.4f} degrees", c.pixels,
                      c.mean_deg, c.median_deg, c.p95_deg, c.max_deg);

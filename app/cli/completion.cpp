@@ -50,7 +50,7 @@ std::vector<std::string> words_after(const CommandWord& word) {
   return words;
 }
 
-// Of bash: what may follow an option.
+// What may follow an option, in bash.
 std::string bash_values(const std::string& path, const CommandWord& word) {
   std::string text;
   for (const CommandOption& option : word.options) {
@@ -68,7 +68,7 @@ std::string bash_values(const std::string& path, const CommandWord& word) {
   return text;
 }
 
-/// Of zsh: text within [brackets] of _arguments.
+/// Text within [brackets] of _arguments, in zsh.
 std::string zsh_help(std::string_view text) {
   std::string escaped;
   for (const char c : text) {

@@ -12,7 +12,7 @@
 
 namespace weft::app {
 
-/// Of a test shot: where nobody says another one, and the longest.
+/// The exposure of a test shot where nobody says another one.
 inline constexpr double kTestShot_us = 50'000;
 
 /// False where somebody wants an end before.

@@ -187,7 +187,7 @@ void print_words(const SolveReport& report) {
   print(fmt::format("  look at {}", (report.folder / "report.html").string()));
 }
 
-// Of a session that goes on making its maps of another solve: which, and how this one is chosen.
+// Says which other solve a session goes on making its maps of, and how this one is chosen.
 void print_other_current(const SolveReport& report, const std::filesystem::path& folder) {
   const Result<Session> session = read_session(folder);
   if (!session) return;

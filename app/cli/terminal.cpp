@@ -46,7 +46,7 @@ std::string shown(std::string_view text) {
   return line + '\n';
 }
 
-// Of a phase that began so many seconds ago; nothing where it is too early to say.
+// What is left of a phase that began `seconds` ago; nothing where it is too early to say.
 std::optional<double> seconds_left(double share, double seconds) {
   if (share <= 0.02 || seconds <= 0.5) return std::nullopt;
   return seconds / share * (1 - share);

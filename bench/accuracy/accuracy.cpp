@@ -381,7 +381,7 @@ Result<Rows> specular_warnings(const AccuracyTableOptions& options) {
 
 namespace {
 
-// Of a weave and a material each.
+// A weave and a material each.
 const std::vector<std::string> kCloths = {"smooth lambert", "plain white", "deep lambert",
                                           "plain dark-satin"};
 

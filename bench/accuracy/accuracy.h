@@ -64,7 +64,7 @@ Result<Rows> accuracy_gates(const AccuracyTableOptions& options);
 Result<Rows> explain_table(const AccuracyTableOptions& options);
 Result<Rows> gloss_table(const AccuracyTableOptions& options);
 Result<Rows> level_speed(const AccuracyTableOptions& options);
-/// Of whole sessions of these sizes.
+/// Prices whole sessions of these sizes.
 Result<Rows> price_table(const AccuracyTableOptions& options, const std::vector<double>& megapixels);
 
 }  // namespace weft::bench

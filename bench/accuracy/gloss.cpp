@@ -298,7 +298,7 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
   if (!base_us) return base_us.error();
   Json glossy_us;
   if (found.is_measured()) {
-    // Of one material, which begins where the standard method leaves it.
+    // The glossy method of one material begins where the standard method leaves it.
     const auto beneath = solver::standard_method();
     const auto glossy =
         solver::glossy_method(*beneath, {{lobe, solver::one_sigma_off(lobe, found.covariance)}},

@@ -13,7 +13,7 @@ namespace weft::bench {
 Result<void> make_archive(const std::filesystem::path& folder, const std::filesystem::path& scene,
                           double megapixels, int sessions, int of_their_own);
 
-/// Of five to four.
+/// Sets a frame of five to four.
 void set_size(simulator::CameraSettings& camera, double megapixels);
 
 /// Simulates one without its truth. Errors of simulating.

@@ -34,7 +34,7 @@ enum class Happening { kStart, kReady, kFailure, kReturn };
 
 struct FarmEvent {
   double time = 0;
-  std::uint64_t order = 0;  // of those at one time
+  std::uint64_t order = 0;  // among events at one time
   Happening what = Happening::kStart;
   std::size_t which = 0;  // task or node
 

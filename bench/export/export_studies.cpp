@@ -140,7 +140,7 @@ Planes planes_of_texture(const Image<float>& texture, std::size_t count) {
   return planes;
 }
 
-// Of `count` planes; with `in_8_bits` against the values that 8 bits have.
+// PSNR of the planes; with `in_8_bits` against the values that 8 bits have.
 double psnr_of(const Planes& planes, const Image<float>& decoded, bool in_8_bits) {
   double sum = 0;
   for (std::size_t p = 0; p < planes.size(); ++p) {

@@ -266,9 +266,9 @@ Result<Json> row_of(const app::RigClient& client, int port, const Beside& beside
 }  // namespace
 
 /// How long a daemon without devices takes for GET /api/v1/rig on a connection of its own, median and worst
-/// in ms: undisturbed; beside malformed requests one after another; beside silent clients, every second one
-/// of them in the middle of its request; beside slow readers, who ask for openapi.json twenty times at once
-/// and take 40 kB a second of it; beside all of them. Errors: those of RigServer::start() and
+/// in ms: undisturbed; beside malformed requests one after another; beside silent clients, every second
+/// one of them in the middle of its request; beside slow readers, who ask for openapi.json twenty times at
+/// once and take 40 kB a second of it; beside all of them. Errors: those of RigServer::start() and
 /// RigClient::connect(), kTryAgain where a client cannot connect.
 Result<Rows> door_table(const StudyOptions& options) {
   const TemporaryFolder folder;

@@ -58,7 +58,7 @@ Vec3 weave_normal(int x, int y) {
   return normalized({slope * std::sin(turn * x), slope * std::sin(turn * y), 1});
 }
 
-// Of the light of strength 1.
+// What cloth reflects of light of strength 1.
 double reflected(Cloth cloth, Vec3 n, Vec3 l) {
   const double diffuse = kClothAlbedo * std::max(0.0, dot(n, l));
   if (cloth == Cloth::kSmooth) return diffuse;

@@ -39,7 +39,7 @@ std::optional<double> edge_width(View<const std::uint8_t> grey, PixelPoint a, Pi
   return (brightest - darkest) / steepest;
 }
 
-// Of the edges along rows and those along columns the blurrier: a camera shakes in one direction.
+// The blurrier of the edges along rows and those along columns: a camera shakes in one direction.
 double edge_width(View<const std::uint8_t> grey, Grid& grid) {
   std::vector<double> along_rows, along_columns;
   for (int j = 1; j <= grid.rows(); ++j) {

@@ -29,11 +29,11 @@ inline PixelPoint share_of(const PixelPoint& px, Size size) {
 
 /// How far tags are seen from where they belong.
 struct TagOffsets {
-  int tags = 0;       ///< of those that belong somewhere
+  int tags = 0;       ///< that belong somewhere
   double rms_mm = 0;  ///< of their corners, in the plane of each tag
 };
-/// Of tags seen in a picture of `size` that shows the whole frame of `camera`. Nothing where none of them
-/// belongs anywhere.
+/// Offsets of tags seen in a picture of `size` that shows the whole frame of `camera`. Nothing where none of
+/// them belongs anywhere.
 std::optional<TagOffsets> offsets_of(std::span<const TagSighting> tags, Size size, const CameraModel& camera,
                                      std::span<const Fiducial> fiducials);
 

@@ -230,7 +230,7 @@ void compare_views(std::span<const BoardView> views, const Bundle& bundle, Board
   }
 }
 
-/// Of all corners in each part of the frame.
+/// Mean residuals of all corners in each part of the frame.
 std::vector<PixelPoint> mean_residuals(std::span<const BoardView> views, const Bundle& bundle,
                                        const std::vector<int>& corners, const GuidanceOptions& options) {
   if (views.size() < kToFit) return {};

@@ -65,13 +65,13 @@ struct BoardGuidance {
   std::vector<double> alike;  ///< of each view with the one before it most like it: 1 is the same pose
 };
 
-/// Of the poses in which the whole board is in the frame (5 x 5 places; level and tilted by 15 degrees, 30
-/// and options.most_tilt_deg to eight sides; on the table and lifted), the one after which focal length
+/// Asks for the pose, of those in which the whole board is in the frame (5 x 5 places; level and tilted by 15
+/// degrees, 30 and options.most_tilt_deg to eight sides; on the table and lifted), after which focal length
 /// and a pixel's place on the table are predicted nearest to what is asked; once what is asked is met, or
 /// none adds much to it, the one that shows most parts of the frame in which no corner was seen. The
 /// information of a photograph is the Fisher information of its corners on focal lengths, principal point,
-/// k1, k2, p1 and p2 after its own pose has followed (a Schur complement), on top of what `start` tells,
-/// its principal point to a twentieth of the frame.
+/// k1, k2, p1 and p2 after its own pose has followed (a Schur complement), on top of what `start` tells, its
+/// principal point to a twentieth of the frame.
 ///
 /// `start` is the camera as it was known before, from which poses of single views are found; it is refined
 /// where three views or more allow it. `table` is the view in which the board lies on the table,

@@ -33,7 +33,7 @@ struct LateralTerms {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
 
-  int count = 0;  // of those fitted
+  int count = 0;  // terms fitted
 
   double sigma(int i) const { return std::sqrt(covariance(i, i)); }
   bool is_noise() const {

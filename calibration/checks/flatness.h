@@ -44,7 +44,7 @@ struct SheetCheck {
   int squares = 0;  ///< with a normal: three LEDs at least
   double tilt_deg = 0;
   double normal_sigma_deg = 0;  ///< of how the sheet lies
-  /// Of a tilted sheet: solved slopes over true ones along the true slope, and how well they are known.
+  /// Solved slopes of a tilted sheet over true ones along the true slope, and how well they are known.
   std::optional<double> slope_gain = {};
   double slope_gain_sigma = 0;
   std::array<double, 3> reflectance_rgb = {};  ///< mean solved albedo

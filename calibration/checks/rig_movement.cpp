@@ -203,7 +203,7 @@ void put_numbers(Story& story) {
   }
 }
 
-/// Of the LEDs' parameters among the numbers.
+/// The covariance of the LEDs' parameters among the numbers.
 ParameterCovariance covariance_of_leds(const Story& story) {
   ParameterCovariance out;
   std::vector<Eigen::Index> kept;

@@ -91,7 +91,7 @@ struct Movement {
   /// The rig as it is now, in the frame of its table.
   CameraModel camera;
   NearLights lights;
-  /// Of the parameters of LEDs that changed, named as in ParameterCovariance.
+  /// Has the parameters of LEDs that changed, named as in ParameterCovariance.
   ParameterCovariance covariance;
 };
 

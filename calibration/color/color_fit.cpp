@@ -175,7 +175,7 @@ Eigen::VectorXd robust(std::vector<Target> targets, Eigen::VectorXd p, double fi
   return p;
 }
 
-// Of luminance, reference over camera.
+// Luminance, reference over camera.
 double median_ratio(std::span<const ChartSample> samples) {
   std::vector<double> ratios;
   for (const ChartSample& s : samples) {

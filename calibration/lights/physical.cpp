@@ -400,7 +400,7 @@ std::vector<double*> Fit::shot_blocks() {
   return shots;
 }
 
-// Of all that is free, each block in the tangent of its manifold, and where each block begins in it.
+// Finds the matrix of all that is free, each block in the tangent of its manifold, and where each begins.
 void Fit::find_normal_matrix() {
   ceres::Problem::EvaluateOptions all;
   begin_.clear();
@@ -571,7 +571,7 @@ void Fit::settle() {
   }
 }
 
-// Of readings that contradict each other, where LEDs come to lie says nothing.
+// Where LEDs come to lie says nothing where readings contradict each other.
 Result<void> Fit::check_leds() const {
   if (fit_.misfits()) return {};
   for (std::size_t k = 0; k < p_.leds.size(); ++k) {

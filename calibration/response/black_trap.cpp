@@ -48,7 +48,7 @@ std::optional<Rect> find_trap(const Image<float>& picture) {
   return darkest;
 }
 
-// Of what is seen, the part that a trap shows of the light around it is share / (1 + share).
+// The part that a trap shows of the light seen around it is share / (1 + share).
 std::array<double, 3> shares_of(const Image<float>& picture, Rect trap, double spread) {
   CoarseLight light({picture.width(), picture.height()});
   for (int c = 0; c < 3; ++c) {

@@ -163,7 +163,7 @@ Result<PhotonTransfer> fit_photon_transfer(std::span<const TransferPoint> points
   result.electrons_per_count = 1 / line.slope;
   result.sigma_electrons_per_count = std::sqrt(line.slope_variance) / (line.slope * line.slope);
   result.read_noise_counts = std::sqrt(std::max(line.intercept, 0.0));
-  // Of a root: sigma / (2 root), or where that is nothing, the root of sigma.
+  // Sigma of a root: sigma / (2 root), or where that is nothing, the root of sigma.
   const double sigma = std::sqrt(line.intercept_variance);
   result.sigma_read_noise_counts =
       line.intercept > sigma ? sigma / (2 * result.read_noise_counts) : std::sqrt(sigma);

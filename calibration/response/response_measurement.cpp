@@ -228,7 +228,7 @@ class Measurement {
   }
 
   static Result<void> require_sum(const Triple& t, const SuperposedLight& light) {
-    // Of little light an unknown black level would be much.
+    // An unknown black level would be much of little light.
     if (brightness(*t.both) < 3 * kLeastLight) return {};
     const double ratio = sum_over_both(light);
     if (std::abs(ratio - 1) <= kMostMissing) return {};

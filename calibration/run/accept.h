@@ -15,8 +15,8 @@ namespace weft::app {
 
 /// What becomes different where a rig scans by one calibration in the place of another.
 struct CalibrationChange {
-  /// Of maps, as far as both calibrations know camera and near lights: the old one's error if the new one is
-  /// right.
+  /// The error of maps, as far as both calibrations know camera and near lights: the old one's if the new one
+  /// is right.
   std::optional<calibration::MovementCost> maps;
   std::vector<std::string> gained, lost;  ///< parts that only one of them has: "camera", "color"
   std::string old_id, new_id;

@@ -88,7 +88,7 @@ void describe(Fields& fields, ChartFile& file) {
   }
 }
 
-// Of the 24 triples of one key.
+// The colours in the 24 triples of one key.
 Result<ChartColors> written_colors(const fs::path& file, const std::string& key, const Json& list) {
   ChartColors colors;
   colors.name = "by chart.toml";

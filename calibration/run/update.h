@@ -23,11 +23,11 @@ struct CalibrateUpdateOptions {
 };
 void describe(Fields& fields, CalibrateUpdateOptions& options);
 
-/// Fits again what has moved (calibration/checks/rig_movement.h), the rest held by what the calibration knows
-/// of it, and writes a new calibration: camera.json where camera and table moved to each other, lights.json
-/// where LEDs moved to the table or changed, every other part as it was, and report/update.html. What was
-/// known of a LED goes with it where LEDs were exchanged; the new camera.json has no covariance. The rig
-/// frame stays with the table. Sessions keep the calibration that they were taken with; `weft solve
+/// Fits again what has moved (calibration/checks/rig_movement.h), the rest held by what the calibration
+/// knows of it, and writes a new calibration: camera.json where camera and table moved to each other,
+/// lights.json where LEDs moved to the table or changed, every other part as it was, and report/update.html.
+/// What was known of a LED goes with it where LEDs were exchanged; the new camera.json has no covariance. The
+/// rig frame stays with the table. Sessions keep the calibration that they were taken with; `weft solve
 /// --calibration` solves them again with this one.
 ///
 /// Errors: as look_at_rig(); kBadData where nothing has moved, and so there is nothing to update, or where

@@ -77,7 +77,7 @@ class CameraLink : public Camera {
   Result<void> stop_looking() override;
   Result<CameraFacts> recover() override;
 
-  /// Of the worker; 0 where none runs.
+  /// 0 where no worker runs.
   pid_t worker_pid() const { return worker_ ? worker_->pid() : 0; }
 
  private:

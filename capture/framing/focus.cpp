@@ -64,8 +64,8 @@ double mean_of(const FocusMap::Cells& cells) {
   return count > 0 ? sum / count : kNone;
 }
 
-/// Of a plane through the logarithms of the cells, from one edge to the other: least squares over a grid,
-/// whose columns and rows are independent where no cell is missing, and nearly so where few are.
+/// The rise of a plane through the logarithms of the cells, from one edge to the other: least squares over a
+/// grid, whose columns and rows are independent where no cell is missing, and nearly so where few are.
 std::optional<double> rise(const FocusMap::Cells& cells, bool across) {
   const int steps = across ? FocusMap::kColumns : FocusMap::kRows;
   double xx = 0, xy = 0, x_sum = 0, y_sum = 0, count = 0;

@@ -108,7 +108,7 @@ struct RefusedFrame {
 struct ScanStatus {
   ScanPhase phase = ScanPhase::kConnecting;
   int led = 0;                             ///< being photographed
-  ShotRole role = ShotRole::kLit;          ///< of that
+  ShotRole role = ShotRole::kLit;          ///< of the shot
   Polariser polariser = Polariser::kNone;  ///< at that
   int frames = 0;                          ///< kept
   int frames_planned = 0;

@@ -7,7 +7,7 @@
 
 namespace weft {
 
-/// Of the system.
+/// The system's host name.
 std::string machine_name();
 
 /// What a folder is called while this process makes it aside: `.TARGET.MACHINE.PROCESS.partial`. Two machines

@@ -57,7 +57,7 @@ int above_standard(int descriptor) {
   return ::fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
 }
 
-/// Of input, output and errors, none of them among the standard ones.
+/// Input, output and errors, none of them among the standard ones.
 using Streams = std::array<Descriptor, 3>;
 
 Result<Streams> streams_of(const ProcessStart& start) {

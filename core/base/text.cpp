@@ -36,7 +36,7 @@ struct Character {
   std::size_t bytes = 1;
 };
 
-// Of a text that is not empty. Bytes that are no UTF-8 are taken one by one, as the code 0.
+// The first of a text that is not empty. Bytes that are no UTF-8 are taken one by one, as the code 0.
 Character first_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(0);

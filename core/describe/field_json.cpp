@@ -85,7 +85,7 @@ void JsonReader::take(const Field& field, Value value) {
       [&]<typename T>(T* each) {
         using Read = typename Inner<T>::Type;
         if constexpr (std::is_same_v<T, Json>) {
-          // Of the kind of its default; none has any.
+          // The value is of its default's kind; without one, of any.
           if (each->is_array()) fields_.list(field.name);
           if (each->is_object()) fields_.object(field.name);
           require(fields_.has(field.name), field.name, "is missing");

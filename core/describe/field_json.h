@@ -73,8 +73,8 @@ class JsonWriter final : public Fields {
 /// What one field may hold, as JSON Schema says it, with its default.
 Json property_of(const Field& field, const Fields::Value& value);
 
-/// Of which documents a schema is: of all that a reader takes, or of what a writer of today makes, which
-/// always has the fields that it may leave out of older ones.
+/// The documents that a schema is of: all that a reader takes, or what a writer of today makes, which always
+/// has the fields that it may leave out of older ones.
 enum class SchemaOf { kRead, kWritten };
 
 /// Says what an object may have, as JSON Schema does (2020-12).

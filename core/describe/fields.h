@@ -218,7 +218,7 @@ class Fields {
   virtual void exclude(const char* /*field*/, const char* /*other*/) {}
   /// Who says the field must say the other.
   virtual void need(const char* /*field*/, const char* /*other*/) {}
-  /// Of some fields one at least must be said.
+  /// At least one of some fields must be said.
   virtual void need_one(const std::vector<const char*>& /*fields*/) {}
   /// The object as it was read, so that fields of newer minor versions survive a rewrite.
   virtual void keep(Json& /*document*/) {}

@@ -31,7 +31,7 @@ double squared(double v) {
   return v * v;
 }
 
-// Of an angle in degrees, from 0 to below 360; 0 for a grey.
+// An angle in degrees, from 0 to below 360; 0 for a grey.
 double hue_deg(double b, double a) {
   if (a == 0 && b == 0) return 0;
   const double h = degrees(std::atan2(b, a));

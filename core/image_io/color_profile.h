@@ -18,7 +18,7 @@ std::vector<std::uint8_t> srgb_profile();
 /// one of tables, or is damaged.
 ColorSpace color_of_profile(std::span<const std::uint8_t> profile);
 
-/// Of a display whose light is the power `gamma` of its signal. 2.2 counts as sRGB.
+/// The space of a display whose light is the power `gamma` of its signal. 2.2 counts as sRGB.
 ColorSpace color_of_gamma(double gamma);
 
 }  // namespace weft

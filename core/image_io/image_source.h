@@ -53,7 +53,7 @@ bool tile_is_too_large(std::int64_t width, std::int64_t height, Size image);
 /// The description that ImageWriter puts into a TIFF or PNG, or the text of another program.
 ImageAttributes attributes_of_texts(ImageAttributes texts);
 
-/// Of pixels a unit of `unit_mm`; nothing where one of them is not known.
+/// The pitch of pixels a unit of `unit_mm`; nothing where one of them is not known.
 PixelPitch pitch_of_density(double x, double y, double unit_mm);
 
 }  // namespace weft

@@ -26,7 +26,7 @@ Mat3 rig_from_cloth(const ClothPose& pose);
 Vec3 seen_from(const ClothPose& pose, double height_mm, Vec3 point_in_rig_mm);
 CameraModel seen_from(const ClothPose& pose, double height_mm, CameraModel camera);
 Lights seen_from(const ClothPose& pose, double height_mm, Lights lights);
-/// Of parameters named NAME.x, NAME.y and NAME.z, which are there together; the others are numbers that no
+/// Turns parameters named NAME.x, NAME.y and NAME.z, which are there together; the others are numbers that no
 /// turn changes.
 ParameterCovariance seen_from(const ClothPose& pose, ParameterCovariance covariance);
 

@@ -14,8 +14,7 @@
 namespace weft {
 namespace {
 
-// Of the same shot at several exposures the least that is clipped and the least room: brackets are there for
-// both.
+// The least that is clipped and the least room of one shot at several exposures: brackets are there for both.
 std::map<std::pair<int, Polariser>, Exposed> best_of_shots(const Session& session) {
   std::map<std::pair<int, Polariser>, Exposed> shots;
   for (const Shot& shot : session.shots) {
@@ -28,7 +27,7 @@ std::map<std::pair<int, Polariser>, Exposed> best_of_shots(const Session& sessio
   return shots;
 }
 
-// Of each LED the worst of its shots through films.
+// The worst of each LED's shots through films.
 std::map<int, Exposed> exposed_by_led(const Session& session) {
   std::map<int, Exposed> leds;
   for (const auto& [shot, exposed] : best_of_shots(session)) {

@@ -22,7 +22,7 @@ struct RadialShift {
 struct LateralColor {
   RadialShift red, blue;
 
-  /// Of a channel, 0 red, 1 green, 2 blue.
+  /// The shift of a channel: 0 red, 1 green, 2 blue.
   RadialShift of(std::size_t channel) const {
     return channel == 0 ? red : channel == 2 ? blue : RadialShift();
   }

@@ -29,7 +29,7 @@ struct Spread {
   double sum = 0, count = 0;
 };
 
-// Of the cell whose middle is the last at or before a place; -1 before the first.
+// The cell whose middle is the last at or before a place; -1 before the first.
 int cell_before(int at, int side) {
   return (2 * at + 1 + side) / (2 * side) - 1;
 }
@@ -96,7 +96,7 @@ SpreadLight::SpreadLight(const CoarseLight& light, double spread)
   }
 }
 
-// Of a column of cells at the height of row y.
+// The mean of a column of cells at the height of row y.
 double SpreadLight::cell_at(int column, int y, int channel) const {
   const int before = cell_before(y, side_);
   const int upper = std::max(before, 0), lower = std::min(before + 1, mean_.height() - 1);

@@ -131,7 +131,7 @@ std::string table_of_path_words(const Json& description) {
   return fmt::format("\n## Words in paths\n\n| in braces | what it is |\n|---|---|\n{}", fmt::join(rows, ""));
 }
 
-/// Of a body that is one of several kinds, the fields of each by name; those that must be said are bold.
+/// The fields of each kind that a body may be, by name; those that must be said are bold.
 std::string table_of_kinds(const Json& body, const Json& schemas) {
   std::string table =
       "One of these kinds, by its `kind`; what is bold must be said. `GET forms` has each as JSON Schema.\n\n"

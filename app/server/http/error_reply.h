@@ -22,8 +22,8 @@ std::string_view code_of(const Error& error);
 /// Every such word.
 std::vector<std::string_view> error_codes();
 
-/// Of an exception of the standard library, which is no reason for a daemon to end: kTryAgain where memory
-/// ran out, else kInternal.
+/// The error for an exception of the standard library, which is no reason for a daemon to end: kTryAgain
+/// where memory ran out, else kInternal.
 Error error_of_exception(const std::exception& thrown, const std::string& where);
 
 /// What error_document() made; anything else is kProtocol of `where`.

@@ -14,14 +14,15 @@ namespace weft::app {
 /// with it. The folder is there where an argument names a file in it.
 inline constexpr const char* kJobFiles = "{files}";
 
-/// Of what a job wants: the seconds that it is planned to take. Its share is then one of seconds.
+/// Names the seconds that a job is planned to take, in what it wants. Its share is then one of seconds.
 inline constexpr const char* kPlannedSeconds = "planned_s";
 
 /// What a job is to do: a verb of weft with its arguments, as a process of its own.
 struct JobSpec {
   std::string kind;  ///< "solve", "rectify", "calibrate lights", ...
   std::string of;    ///< what it works on, for people: the name of a session
-  /// Of weft: {"solve", "/data/a.weft", "--quality", "robust"}. kJobFiles stands for a folder of its own.
+  /// Arguments of weft: {"solve", "/data/a.weft", "--quality", "robust"}. kJobFiles stands for a folder of
+  /// its own.
   std::vector<std::string> arguments;
   std::string by;                       ///< who asked for it
   std::string request_id;               ///< the same again is the same job; empty: none

@@ -87,7 +87,7 @@ void Logbook::add(const char* event, const std::string& says, Json fields) {
 }
 
 LogPage read_log(const std::filesystem::path& folder, std::optional<std::int64_t> after, std::size_t limit) {
-  std::deque<Json> lines;  // of those seen so far the oldest
+  std::deque<Json> lines;  // the oldest seen so far
   LogPage page;
   for_each_line(folder, [&](Json line, std::int64_t number) {
     if (after ? number <= *after : lines.size() == limit) return false;

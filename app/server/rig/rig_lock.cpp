@@ -48,7 +48,7 @@ std::string owner_of(const std::filesystem::path& path) {
   return user == nullptr ? fmt::format("user {}", about.st_uid) : std::string(user->pw_name);
 }
 
-/// Of a state folder that does not let this user in.
+/// The error of a state folder that does not let this user in.
 Error kept_out(const std::filesystem::path& folder) {
   struct stat about = {};
   if (stat(folder.c_str(), &about) == 0 && about.st_uid == geteuid()) return cannot_write(folder, EACCES);

@@ -16,8 +16,8 @@ namespace weft::app {
 /// owner's alone.
 std::filesystem::path state_folder(const capture::Rig& rig);
 
-/// Of all processes on this machine only one owns a rig: the one that holds the lock in its state folder. The
-/// system takes it back when the process ends, however it ends.
+/// Only one process on this machine owns a rig: the one that holds the lock in its state folder. The system
+/// takes it back when the process ends, however it ends.
 class RigLock {
  public:
   /// kTryAgain, naming the process, where another one has it; kCannotCreate where the folder is another

@@ -30,10 +30,10 @@ struct RigStatus {
 
   State state = State::kIdle;
   std::string session;                ///< being scanned, or scanned last; empty: none yet
-  capture::ScanStatus scan;           ///< of that session
+  capture::ScanStatus scan;           ///< where the session's scan stands
   std::optional<Error> error;         ///< why that scan failed
   std::vector<std::string> warnings;  ///< that it ended with
-  std::vector<LedStatus> leds;        ///< of that scan, in the order of its plan
+  std::vector<LedStatus> leds;        ///< the scan's LEDs, in the order of its plan
   std::optional<double> left_s;       ///< of a scan that runs, once two frames were kept
   bool can_go_on = false;             ///< what failed or was cancelled can be begun again
   std::vector<double> can_light_s;    ///< Attendance::Status

@@ -26,7 +26,7 @@ class ScanPace {
   bool waits_ = false;
   bool has_begun_ = false;
   double worked_s_ = 0;  ///< since the first shot began
-  double kept_s_ = 0;    ///< of that until the last frame was kept
+  double kept_s_ = 0;    ///< worked_s_ when the last frame was kept
   int shots_ = 0;        ///< kept in that time
   int frames_ = 0;
   std::optional<double> left_s_;

@@ -21,7 +21,7 @@ struct TestShot {
   int led = 0;                         ///< 0: none was lit
   double exposure_us = 0;              ///< of the camera's own
   std::optional<FrameFile> frame;      ///< once it is taken
-  std::optional<ShotReading> reading;  ///< of that; none where it cannot be decoded
+  std::optional<ShotReading> reading;  ///< of the frame; none where it cannot be decoded
   std::optional<Error> error;          ///< why there is no frame
 };
 

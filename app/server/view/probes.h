@@ -39,7 +39,7 @@ struct Ground {
   double mm_per_pixel = 0;  ///< of the grid
 };
 
-/// Of the rig frame, a place on the plane of the cloth; of a grid, from the first pixel's centre, y up.
+/// A place on the plane of the cloth, in the rig frame; of a grid, from the first pixel's centre, y up.
 Vec3 place_on(const Ground& ground, double x, double y);
 
 /// {"mm", "sigma_mm", "profile": {"mm", "height_mm", "albedo"}} along a line. The length is that on the plane

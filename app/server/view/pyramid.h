@@ -30,11 +30,11 @@ inline constexpr int kTileSide = 512;
 /// any time. Safe from any thread.
 class Pyramid {
  public:
-  /// Of a map of a folder. Errors of ExrWindow::open(), read_image(), and of writing to `kept`.
+  /// Opens a map of a folder. Errors of ExrWindow::open(), read_image(), and of writing to `kept`.
   static Result<std::unique_ptr<Pyramid>> open(const std::filesystem::path& folder, const Layer& layer,
                                                const std::filesystem::path& kept);
-  /// Of a raw frame, as shares of the way from black to white, R, G, B. At level 0 each photosite shows the
-  /// colours of its cell of the filter pattern. Errors of capture::decode_raw().
+  /// Opens a raw frame, as shares of the way from black to white, R, G, B. At level 0 each photosite shows
+  /// the colours of its cell of the filter pattern. Errors of capture::decode_raw().
   static Result<std::unique_ptr<Pyramid>> open_raw(const std::filesystem::path& file,
                                                    const std::filesystem::path& kept);
 

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSet = "moved";  // names a set of photographs where a session would do too
 
-// Of "-o,--output" the long name.
+// The long name in "-o,--output".
 std::string long_option_of(const Field& field) {
   std::string option = option_of(field);
   option.erase(0, option.find(',') + 1);

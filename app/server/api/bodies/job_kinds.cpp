@@ -45,7 +45,7 @@ void add(JobSpec& spec, std::initializer_list<std::string> words) {
   spec.arguments.insert(spec.arguments.end(), words);
 }
 
-/// Of what files are made.
+/// What files are made of.
 struct ExportSource {
   std::filesystem::path session;
   std::string set, material;

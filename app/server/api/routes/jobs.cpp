@@ -26,7 +26,7 @@ namespace {
 constexpr int kMostJobs = 1000;
 constexpr int kPageOfSessions = 1000;
 
-// Of all pages.
+// The sessions of all pages.
 Result<std::vector<std::filesystem::path>> all_folders(LibraryService& library,
                                                        const std::map<std::string, std::string>& asked) {
   Result<library::Query> query = session_query(asked);
