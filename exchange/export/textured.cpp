@@ -29,10 +29,10 @@ std::optional<FoundChannels> find_channels(const ClothTextures& cloth,
                                            const std::vector<std::string>& channels) {
   for (std::size_t i = 0; i < cloth.textures.size(); ++i) {
     const exchange::PresetFile& file = cloth.preset.textures[i].file;
-    const auto found = std::ranges::search(file.channels, channels);
-    if (found.empty()) continue;
-    return FoundChannels{cloth.textures[i], file.stored,
-                         static_cast<std::size_t>(found.begin() - file.channels.begin())};
+    const std::vector<std::string>& all = file.channels;
+    const auto found = std::search(all.begin(), all.end(), channels.begin(), channels.end());
+    if (found == all.end()) continue;
+    return FoundChannels{cloth.textures[i], file.stored, static_cast<std::size_t>(found - all.begin())};
   }
   return std::nullopt;
 }
