@@ -70,7 +70,7 @@ set(WEFT_UPPER_HALVES "^(calibration/(guide|run)|exchange/export|library/(import
 function(weft_library name)
   cmake_parse_arguments(ARG "PLAIN;APART" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;OPTIONS" ${ARGN})
   cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE folder)
-  if(WEFT_BUILT AND folder MATCHES "^(batch|bench|calibration|library/batch|material|report|simulator|solve|solver)(/|$)"
+  if(WEFT_BUILT AND folder MATCHES "^(bench|calibration|library/batch|material|report|simulator|solve|solver)(/|$)"
      AND NOT folder MATCHES "${WEFT_UPPER_HALVES}")
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE weft_settings ${WEFT_BUILT}/${folder}/lib${name}.a

@@ -262,7 +262,7 @@ Result<Rows> photos_table(const PhotosOptions& options) {
   for (const bool keep : {false, true}) {
     const auto wants_this = [&](const solver::MethodName& name) { return name.keeps_clipped == keep; };
     if (std::none_of(methods->begin(), methods->end(), wants_this)) continue;
-    plan->clipped = keep ? app::Clipped::kKeep : app::Clipped::kMark;
+    plan->clipped = keep ? Clipped::kKeep : Clipped::kMark;
     JobContext context;
     context.threads = threads;
     const auto photographs = app::load_photographs(*plan, context);

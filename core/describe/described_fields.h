@@ -10,7 +10,7 @@
 
 // Fields that requests share.
 
-namespace weft::app {
+namespace weft {
 
 /// The session that is worked on.
 inline void describe_session(Fields& fields, std::filesystem::path& session) {
@@ -64,4 +64,4 @@ inline void describe_compression(Fields& fields, Compression& compression) {
   fields.choice({"compress", "Of EXR files: none, zip, piz"}, compression, kCompressionNames);
 }
 
-}  // namespace weft::app
+}  // namespace weft

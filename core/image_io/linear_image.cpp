@@ -11,7 +11,7 @@
 
 #include "core/rig/radiometry.h"
 
-namespace weft::app {
+namespace weft {
 namespace {
 
 // Inverse of the sRGB transfer function (IEC 61966-2-1).
@@ -133,4 +133,4 @@ void scale(Image<float>& image, double factor) {
   }
 }
 
-}  // namespace weft::app
+}  // namespace weft

@@ -9,7 +9,7 @@
 #include "core/image/image.h"
 #include "core/image_io/image_io.h"
 
-namespace weft::app {
+namespace weft {
 
 /// How the values of a developed photograph follow light.
 enum class Transfer {
@@ -55,4 +55,4 @@ void subtract(Image<float>& image, const Image<float>& dark);
 /// image *= factor.
 void scale(Image<float>& image, double factor);
 
-}  // namespace weft::app
+}  // namespace weft

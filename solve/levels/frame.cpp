@@ -71,14 +71,11 @@ Result<FrameFacts> solve_by(std::span<const Stage> stages, const Photographs& ph
   Solving solving = {photographs, tile, context, sink};
   FrameFacts& facts = solving.facts;
   Stopwatch watch;
-  double total = 0;
   for (const Stage& stage : stages) {
     if (stage.is_needed && !stage.is_needed(solving)) continue;
     if (Result<void> ok = stage.apply(solving); !ok) return std::move(ok).error();
-    facts.costs.push_back({stage.name, watch.lap()});
-    total += facts.costs.back().seconds;
   }
-  facts.work.frame = total - facts.waited_seconds - facts.work.total();
+  facts.work.frame = watch.lap() - facts.waited_seconds - facts.work.total();
   return std::move(facts);
 }
 

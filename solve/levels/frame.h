@@ -3,8 +3,6 @@
 
 #include <array>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "core/base/job.h"
 #include "core/base/result.h"
@@ -20,16 +18,10 @@
 
 namespace weft::pipeline {
 
-struct StageCost {
-  std::string name;
-  double seconds = 0;  ///< in those of `solve` its bands also wait for the sink
-};
-
 /// What solving a frame said.
 struct FrameFacts {
-  std::vector<StageCost> costs;  ///< each stage that ran, in order
-  double waited_seconds = 0;     ///< seconds that bands waited for the sink
-  SolveWork work;                ///< all other seconds
+  double waited_seconds = 0;  ///< seconds that bands waited for the sink
+  SolveWork work;             ///< all other seconds
   solver::SolveTally tally;
   // By the stage that found it; none where it did not run.
   std::optional<DeblurFacts> deblur = {};  ///< sharpen

@@ -71,8 +71,7 @@ struct Stage {
   std::function<Result<void>(Solving&)> apply;
 };
 
-/// Solves a frame by a list that begins with a method's stage (stages.h). FrameFacts::costs has the stages
-/// that ran.
+/// Solves a frame by a list that begins with a method's stage (stages.h).
 Result<FrameFacts> solve_by(std::span<const Stage> stages, const Photographs& photographs,
                             const TileOptions& tile, const JobContext& context, const BandSink& sink);
 

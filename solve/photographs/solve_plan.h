@@ -29,11 +29,10 @@ struct SolvePlan {
   std::vector<Shot> repeats;   ///< second shots of LEDs in `lit`
   std::vector<Shot> brackets;  ///< shots of LEDs in `lit` whose exposure ratio the calibration measured
   Size size;
-  bool raw = true;             ///< mosaics; else linear TIFF, PNG or EXR
-  std::filesystem::path mask;  ///< where the cloth is; empty: every pixel counts
-  app::Transfer transfer =
-      app::Transfer::kLinear;  ///< kAuto: files differ, and each is taken by its own kind
-  app::Clipped clipped = app::Clipped::kMark;
+  bool raw = true;                        ///< mosaics; else linear TIFF, PNG or EXR
+  std::filesystem::path mask;             ///< where the cloth is; empty: every pixel counts
+  Transfer transfer = Transfer::kLinear;  ///< kAuto: files differ, and each is taken by its own kind
+  Clipped clipped = Clipped::kMark;
   SolveInput input;                   ///< for solve.json, and what the id of the solve is made of
   std::vector<std::string> warnings;  ///< about shots that will not be used
   solver::Extent extent = solver::Extent::kTiles;  ///< of the level that will be solved by

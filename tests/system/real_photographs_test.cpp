@@ -109,7 +109,7 @@ TEST_F(RealPhotographs, OfMattObjectsLeaveRobustNoBlockThatStandardPredictsBette
   for (const char* object : {"frog", "turtle"}) {
     app::PhotoOptions options;
     options.folder = data_ / object;
-    options.transfer = app::Transfer::kLinear;
+    options.transfer = Transfer::kLinear;
     const Result<pipeline::SolvePlan> plan = app::plan_photos(options);
     ASSERT_TRUE(plan) << plan.error().message();
     const Result<pipeline::Photographs> photographs = app::load_photographs(*plan, {});

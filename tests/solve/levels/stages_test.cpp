@@ -128,20 +128,6 @@ TEST(Stages, OfReferenceWithoutAReliefLeaveTheBytesOfRobust) {
   EXPECT_EQ(once.facts.reference->rounds.size(), 1U) << "the first relief stands";
 }
 
-TEST(Stages, TellWhatTheyCostByTheirNames) {
-  const Photographs photographs = glossy_dimples();
-  const SolvedFrameMaps robust = solved_by(level_without(Level::kRobust, {}), photographs);
-  std::vector<std::string> names;
-  double seconds = 0;
-  for (const StageCost& cost : robust.facts.costs) {
-    names.push_back(cost.name);
-    seconds += cost.seconds;
-  }
-  EXPECT_THAT(names, ElementsAre("standard", "blocks", "lobe", "solve", "check"))
-      << "no lens is known that has anything to undo";
-  EXPECT_NEAR(seconds, robust.facts.work.total() + robust.facts.waited_seconds, 1e-9);
-}
-
 TEST(Stages, CanBePutAnywhere) {
   const Photographs photographs = glossy_dimples();
   std::vector<Stage> stages = level_without(Level::kStandard, {});
