@@ -28,7 +28,7 @@ bool is_within(double value, const Rule& rule) {
   return std::isfinite(value) && value >= rule.least - kSlack && value <= rule.most + kSlack;
 }
 
-Result<void> check_constant(const Parameter& parameter, const Rule& rule) {
+Result<void> check_constant(const TexturedParameter& parameter, const Rule& rule) {
   const auto& c = parameter.constant;
   const std::size_t count = rule.shape == Shape::kScalar ? 1 : rule.shape == Shape::kDirection ? 2 : 3;
   for (std::size_t i = 0; i < count; ++i) {
@@ -83,7 +83,7 @@ Result<void> check_texture(const Texture& texture, const Rule& rule) {
   return {};
 }
 
-Result<void> check_parameter(const Parameter& parameter, const Rule& rule) {
+Result<void> check_parameter(const TexturedParameter& parameter, const Rule& rule) {
   if (auto constant = check_constant(parameter, rule); !constant) return constant;
   return parameter.texture ? check_texture(*parameter.texture, rule) : Result<void>();
 }
@@ -116,7 +116,7 @@ Result<void> check_material(const TexturedMaterial& material) {
   }
   const Rule color = {"base_color", Shape::kColor, 0, 1};
   if (auto checked = check_parameter(material.base_color, color); !checked) return checked;
-  const std::array<std::pair<const std::optional<Parameter>*, Rule>, 11> rules = {{
+  const std::array<std::pair<const std::optional<TexturedParameter>*, Rule>, 11> rules = {{
       {&material.normal, {"normal", Shape::kNormal, -1, 1}},
       {&material.height_mm, {"height_mm", Shape::kScalar, -1e6, 1e6}},
       {&material.roughness, {"roughness", Shape::kScalar, 0, 1}},

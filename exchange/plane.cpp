@@ -5,7 +5,7 @@
 
 namespace weft::exchange {
 
-Result<Plane> plane_of(const TexturedMaterial& material, std::array<int, 2> tiles) {
+Result<ShownPlane> plane_of(const TexturedMaterial& material, std::array<int, 2> tiles) {
   const auto is_count = [](int count) { return count >= 1 && count <= 10000; };
   if (!is_count(tiles[0]) || !is_count(tiles[1])) {
     return Error{ErrorKind::kBadData, "the rectangle cannot be made", "tiles",
@@ -18,11 +18,11 @@ Result<Plane> plane_of(const TexturedMaterial& material, std::array<int, 2> tile
                  "make it a tile first (weft finish), or ask for one"};
   }
   if (material.size_mm) {
-    return Plane{{(*material.size_mm)[0] / 1000 * tiles[0], (*material.size_mm)[1] / 1000 * tiles[1]}, tiles};
+    return ShownPlane{{(*material.size_mm)[0] / 1000 * tiles[0], (*material.size_mm)[1] / 1000 * tiles[1]}, tiles};
   }
   const Size pixels = material.base_color.texture ? material.base_color.texture->size : Size{1, 1};
   const double proportion = static_cast<double>(pixels.height) / pixels.width;
-  return Plane{{1, proportion * tiles[1] / tiles[0]}, tiles};
+  return ShownPlane{{1, proportion * tiles[1] / tiles[0]}, tiles};
 }
 
 }  // namespace weft::exchange

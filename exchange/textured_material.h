@@ -25,7 +25,7 @@ struct Texture {
 };
 
 /// A parameter is a texture or the same everywhere.
-struct Parameter {
+struct TexturedParameter {
   std::optional<Texture> texture = {};
   std::array<double, 3> constant = {};  ///< linear; where there is a texture its mean
   std::string source = "assumed";       ///< "measured", "derived" or "assumed"
@@ -37,21 +37,21 @@ struct TexturedMaterial {
   std::optional<std::array<double, 2>> size_mm;  ///< width and height that a texture covers; none: not known
   bool repeats = false;                          ///< the right border goes on at the left one, and so down
 
-  Parameter base_color;                ///< albedo, linear Rec.709, 0 to 1
-  std::optional<Parameter> normal;     ///< unit, x right, y up (OpenGL); texel = n / 2 + 1/2
-  std::optional<Parameter> height_mm;  ///< towards the viewer, mean 0; scale and offset give mm
+  TexturedParameter base_color;                ///< albedo, linear Rec.709, 0 to 1
+  std::optional<TexturedParameter> normal;     ///< unit, x right, y up (OpenGL); texel = n / 2 + 1/2
+  std::optional<TexturedParameter> height_mm;  ///< towards the viewer, mean 0; scale and offset give mm
   /// Perceptual: its square is alpha of GGX, of an anisotropic lobe the smaller of its two.
-  std::optional<Parameter> roughness;
-  std::optional<Parameter> occlusion;  ///< 1 open
-  std::optional<Parameter> opacity;    ///< 1 cloth, 0 hole
-  std::optional<Parameter> f0;         ///< reflectance at normal incidence
-  std::optional<Parameter> metallic;   ///< 0 or 1
+  std::optional<TexturedParameter> roughness;
+  std::optional<TexturedParameter> occlusion;  ///< 1 open
+  std::optional<TexturedParameter> opacity;    ///< 1 cloth, 0 hole
+  std::optional<TexturedParameter> f0;         ///< reflectance at normal incidence
+  std::optional<TexturedParameter> metallic;   ///< 0 or 1
   /// Strength s, 0 to 1, as in KHR_materials_anisotropy: the larger alpha is alpha + (1 - alpha) s^2.
-  std::optional<Parameter> anisotropy;
-  std::optional<Parameter>
+  std::optional<TexturedParameter> anisotropy;
+  std::optional<TexturedParameter>
       anisotropy_direction;  ///< unit x, y that a highlight is stretched along; texel = d / 2 + 1/2
-  std::optional<Parameter> sheen_color;      ///< linear Rec.709
-  std::optional<Parameter> sheen_roughness;  ///< perceptual
+  std::optional<TexturedParameter> sheen_color;      ///< linear Rec.709
+  std::optional<TexturedParameter> sheen_roughness;  ///< perceptual
 
   /// What leads back to the photographs: "session", "solve", "maps", "calibration", "source.roughness" ...
   std::vector<std::pair<std::string, std::string>> provenance;

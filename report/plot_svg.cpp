@@ -84,7 +84,7 @@ std::string stroke(std::size_t series) {
 
 // Without the points that the plot cannot show.
 Plot reduced_to_shown(Plot plot) {
-  const Axis x = {.log = plot.log_x}, y = {.log = plot.log_y};
+  const PlotAxis x = {.log = plot.log_x}, y = {.log = plot.log_y};
   for (PlotSeries& series : plot.series) {
     std::erase_if(series.points, [&](const PlotPoint& p) { return !x.takes(p.x) || !y.takes(p.y); });
   }
@@ -111,8 +111,8 @@ class Drawing {
         y.push_back(p.y);
       }
     }
-    x_ = Axis::around(x, plot.log_x, kLeft, right_);
-    y_ = Axis::around(y, plot.log_y, bottom_, top_);
+    x_ = PlotAxis::around(x, plot.log_x, kLeft, right_);
+    y_ = PlotAxis::around(y, plot.log_y, bottom_, top_);
   }
 
   std::string draw() {
@@ -258,15 +258,15 @@ class Drawing {
   const double width_, right_, height_, bottom_;
   double top_ = 0;
   std::vector<LegendEntry> legend_;  // one a series
-  Axis x_ = {}, y_ = {};
+  PlotAxis x_ = {}, y_ = {};
   std::vector<Box> taken_;
   std::string out_;
 };
 
 }  // namespace
 
-Axis Axis::around(std::span<const double> values, bool log, double from, double to) {
-  Axis axis = {log ? 1.0 : 0.0, log ? 10.0 : 1.0, from, to, log};
+PlotAxis PlotAxis::around(std::span<const double> values, bool log, double from, double to) {
+  PlotAxis axis = {log ? 1.0 : 0.0, log ? 10.0 : 1.0, from, to, log};
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const double value : values) {
     if (!axis.takes(value)) continue;
@@ -287,16 +287,16 @@ Axis Axis::around(std::span<const double> values, bool log, double from, double 
   return axis;
 }
 
-bool Axis::takes(double value) const {
+bool PlotAxis::takes(double value) const {
   return std::isfinite(value) && (!log || value > 0);
 }
 
-double Axis::at(double value) const {
+double PlotAxis::at(double value) const {
   const double share = log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
   return from + (to - from) * share;
 }
 
-std::vector<double> Axis::ticks() const {
+std::vector<double> PlotAxis::ticks() const {
   return log && high / low >= kFewestDigits ? logarithmic_ticks(low, high) : linear_ticks(low, high);
 }
 

@@ -21,7 +21,7 @@
 #include "core/base/files.h"
 #include "virtual_rig/board/virtual_board.h"
 #include "virtual_rig/control_socket.h"
-#include "virtual_rig/light/exposure.h"
+#include "virtual_rig/light/exposed_frame.h"
 #include "virtual_rig/light/light_faults.h"
 #include "virtual_rig/light/live_picture.h"
 #include "virtual_rig/ptp/virtual_camera.h"

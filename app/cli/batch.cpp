@@ -104,7 +104,7 @@ void print_left_out(const batch::Plan& plan) {
   for (std::size_t r = 0; r < batch::kReasonNames.size(); ++r) {
     int count = 0;
     double seconds = 0;
-    for (const batch::LeftOut& left : plan.left_out) {
+    for (const batch::SkippedSession& left : plan.left_out) {
       if (static_cast<std::size_t>(left.reason) != r) continue;
       ++count;
       seconds += left.seconds;
@@ -114,7 +114,7 @@ void print_left_out(const batch::Plan& plan) {
     print(fmt::format("{} left out: they {}{}", count, words[r],
                       saves ? ", " + hours_words(seconds / 3600) + " saved" : ""));
   }
-  for (const batch::LeftOut& left : plan.left_out) {
+  for (const batch::SkippedSession& left : plan.left_out) {
     if (left.reason == batch::Reason::kUnsolvable) note(left.said);
   }
 }
@@ -189,7 +189,7 @@ Json plan_json(const PlanBatchReport& report) {
                       {"sessions", level.sessions}});
   for (const batch::Spent& spent : header.curve)
     curve.push_back({{"hours", spent.hours}, {"mean_deg", spent.mean_deg}});
-  for (const batch::LeftOut& left : report.plan.left_out)
+  for (const batch::SkippedSession& left : report.plan.left_out)
     left_out.push_back({{"session", left.session},
                         {"left_out", batch::kReasonNames[static_cast<std::size_t>(left.reason)]},
                         {"said", left.said},

@@ -7,7 +7,7 @@
 #include "app/cli/options.h"
 #include "app/cli/verb.h"
 #include "calibration/run/calibrate_outcome.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 
 namespace weft::app {
 

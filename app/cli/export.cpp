@@ -17,7 +17,7 @@
 #include "exchange/export/export.h"
 #include "exchange/export/export_request.h"
 #include "exchange/export/preset_files.h"
-#include "exchange/export/price.h"
+#include "exchange/export/export_price.h"
 
 namespace weft::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
 #include "material/run/maps_request.h"
-#include "material/run/price.h"
+#include "material/run/maps_price.h"
 #include "material/run/session_sets.h"
 
 namespace weft::app {

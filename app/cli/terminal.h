@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 

@@ -15,7 +15,7 @@
 #include "bench/base/bound.h"
 #include "bench/base/measured_rig.h"
 #include "bench/base/yardsticks.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/parallel.h"
 #include "core/solve/solve_record.h"
 #include "simulator/camera/sensor.h"

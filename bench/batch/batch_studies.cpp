@@ -15,7 +15,7 @@
 
 #include "bench/batch/archive.h"
 #include "core/base/files.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/parallel.h"
 #include "core/base/temporary_folder.h"
 #include "core/rig/calibration.h"

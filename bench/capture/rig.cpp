@@ -27,7 +27,7 @@
 #include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/scan.h"
 #include "core/base/files.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/sha256.h"
 #include "core/base/statistics.h"
 #include "core/base/temporary_folder.h"

@@ -22,7 +22,7 @@
 #include "exchange/blocks/decode_blocks.h"
 #include "exchange/blocks/encode.h"
 #include "exchange/export/export.h"
-#include "exchange/export/price.h"
+#include "exchange/export/export_price.h"
 #include "exchange/presets/preset.h"
 #include "simulator/scene/scene.h"
 #include "solve/levels/frame.h"

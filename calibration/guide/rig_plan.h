@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calibration/guide/planned_cloth.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "solver/light_plan/best_place.h"

@@ -8,7 +8,7 @@
 
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/number.h"
 #include "core/base/result.h"
 #include "core/describe/fields.h"

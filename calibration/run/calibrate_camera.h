@@ -6,7 +6,7 @@
 
 #include "calibration/run/board_photographs.h"
 #include "calibration/run/calibrate_outcome.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "calibration/run/calibrate_outcome.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calibration/color/chart_reference.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 #include "core/image/image.h"

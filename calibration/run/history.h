@@ -8,7 +8,7 @@
 
 #include "calibration/run/calibration_report.h"
 #include "calibration/run/last_check.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 

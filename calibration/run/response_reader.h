@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "calibration/response/response_frames.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 

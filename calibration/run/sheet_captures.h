@@ -9,7 +9,7 @@
 #include "calibration/lights/paper_model.h"
 #include "calibration/lights/sheet_blocks.h"
 #include "calibration/run/sheet_files.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"

@@ -8,7 +8,7 @@
 #include "calibration/checks/flatness.h"
 #include "calibration/checks/rig_movement.h"
 #include "calibration/run/sheet_files.h"
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 #include "solve/photographs/photographs.h"

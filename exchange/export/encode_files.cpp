@@ -20,7 +20,7 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using exchange::Plane;
+using exchange::MapPlane;
 
 // One texture to encode, and everywhere it goes: the first place is written, the others are copies.
 struct Task {
@@ -54,10 +54,10 @@ std::vector<Task> tasks_of(const std::vector<EncodeTarget>& targets) {
   return tasks;
 }
 
-std::set<Plane> planes_of(const TextureToWrite& texture) {
-  std::set<Plane> planes;
+std::set<MapPlane> planes_of(const TextureToWrite& texture) {
+  std::set<MapPlane> planes;
   for (const std::string& name : texture.file.channels) {
-    const std::vector<Plane>& needed = exchange::channel_named(name)->planes;
+    const std::vector<MapPlane>& needed = exchange::channel_named(name)->planes;
     planes.insert(needed.begin(), needed.end());
   }
   return planes;
@@ -151,7 +151,7 @@ class Encoder {
 };
 
 bool Encoder::fits_memory(const std::vector<Task*>& tasks, Size size) const {
-  std::set<Plane> all;
+  std::set<MapPlane> all;
   for (const Task* task : tasks) all.merge(planes_of(*task->texture));
   const std::uint64_t planes =
       all.size() + 12 * static_cast<std::uint64_t>(resolved_threads(context_.threads));
@@ -217,7 +217,7 @@ Result<void> Encoder::run_together(const std::vector<Task*>& tasks, Size size) {
     }
     return {};
   }
-  std::set<Plane> all;
+  std::set<MapPlane> all;
   for (const Task* task : tasks) all.merge(planes_of(*task->texture));
   if (Result<void> ok = planes.load(all); !ok) return ok;
   const exchange::ChannelFacts facts = channel_facts(folder_, planes.planes());

@@ -17,7 +17,7 @@
 #include "exchange/export/documents.h"
 #include "exchange/export/encode_files.h"
 #include "exchange/export/prepare.h"
-#include "exchange/export/price.h"
+#include "exchange/export/export_price.h"
 #include "exchange/export/textured.h"
 
 namespace weft::app {
@@ -166,7 +166,7 @@ void drop_numbers(const std::vector<ExportedDocument>& documents, const fs::path
 
 // The source of the map that a channel comes from; "assumed" where it comes from none.
 std::string source_of_channel(const MapFolder& folder, const exchange::Channel& channel) {
-  for (const exchange::Plane plane : channel.planes) {
+  for (const exchange::MapPlane plane : channel.planes) {
     const std::string name = exchange::kind_of(plane).map;
     const MapFacts* map = folder.map(name);
     if (map == nullptr && name == "specular") map = folder.map("f0");

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "exchange/export/export_request.h"
 #include "exchange/presets/export_facts.h"

@@ -22,7 +22,7 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using exchange::Plane;
+using exchange::MapPlane;
 
 constexpr const char* kUnusable = "the maps cannot be exported";
 
@@ -215,11 +215,11 @@ std::optional<double> number_of(const MapFolder& folder, const char* name) {
 
 // Two alphas whose smaller one is `alpha`, by the strength of KHR_materials_anisotropy. The highlight of a
 // built material is stretched along anisotropy_deg, so its larger alpha stands along.
-PlaneOrigin roughness_constant(const MapFolder& folder, const MapFacts& map, Plane plane) {
+PlaneOrigin roughness_constant(const MapFolder& folder, const MapFacts& map, MapPlane plane) {
   const std::optional<double> alpha = alpha_constant(map, "alpha");
-  if (plane == Plane::kAlpha) return {.constant = alpha};
+  if (plane == MapPlane::kAlpha) return {.constant = alpha};
   const double strength = number_of(folder, "anisotropy").value_or(0);
-  if (plane == Plane::kYarnDeg) return {.constant = number_of(folder, "anisotropy_deg").value_or(0)};
+  if (plane == MapPlane::kYarnDeg) return {.constant = number_of(folder, "anisotropy_deg").value_or(0)};
   const std::optional<double> along = alpha_constant(map, "alpha_along");
   if (strength == 0 || !alpha) return {.constant = along};
   return {.constant = *alpha + (1 - *alpha) * strength * strength};
@@ -293,7 +293,7 @@ Result<Json> provenance_of(const MapFolder& folder) {
   return json;
 }
 
-PlaneOrigin origin_of(const MapFolder& folder, Plane plane) {
+PlaneOrigin origin_of(const MapFolder& folder, MapPlane plane) {
   const exchange::PlaneKind& kind = exchange::kind_of(plane);
   const MapFacts* map = folder.map(kind.map);
   if (map == nullptr && std::string(kind.map) == "specular") map = folder.map("f0");
@@ -308,7 +308,7 @@ PlaneOrigin origin_of(const MapFolder& folder, Plane plane) {
                                                 : PlaneOrigin{.constant = map->constant};
   }
   std::vector<std::string> channels = {kind.channel};
-  if (plane == Plane::kAlphaAlong) channels.emplace_back("alpha");
+  if (plane == MapPlane::kAlphaAlong) channels.emplace_back("alpha");
   return {.file = map->file, .channels = std::move(channels)};
 }
 

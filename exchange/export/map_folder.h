@@ -65,6 +65,6 @@ struct PlaneOrigin {
   std::vector<std::string> channels = {};  ///< the first of these that the file has
   std::optional<double> constant = {};
 };
-PlaneOrigin origin_of(const MapFolder& folder, exchange::Plane plane);
+PlaneOrigin origin_of(const MapFolder& folder, exchange::MapPlane plane);
 
 }  // namespace weft::app

@@ -20,10 +20,10 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using exchange::Plane;
+using exchange::MapPlane;
 using exchange::SourcePlanes;
 
-std::size_t index_of(Plane plane) {
+std::size_t index_of(MapPlane plane) {
   return static_cast<std::size_t>(plane);
 }
 
@@ -32,19 +32,19 @@ Error unfit_map(const fs::path& file, std::string why) {
           "make the maps again"};
 }
 
-constexpr std::array kLobePlanes = {Plane::kAlpha, Plane::kAlphaAlong, Plane::kYarnDeg};
+constexpr std::array kLobePlanes = {MapPlane::kAlpha, MapPlane::kAlphaAlong, MapPlane::kYarnDeg};
 
 // How a plane is averaged: what is asked for the same is reduced together.
-exchange::Averaging averaging_of(Plane plane) {
+exchange::Averaging averaging_of(MapPlane plane) {
   switch (plane) {
-    case Plane::kNormalX:
-    case Plane::kNormalY:
-    case Plane::kNormalZ:
+    case MapPlane::kNormalX:
+    case MapPlane::kNormalY:
+    case MapPlane::kNormalZ:
       return exchange::Averaging::kSlopes;
-    case Plane::kAlpha:
-    case Plane::kAlphaAlong:
+    case MapPlane::kAlpha:
+    case MapPlane::kAlphaAlong:
       return exchange::Averaging::kSquares;
-    case Plane::kYarnDeg:
+    case MapPlane::kYarnDeg:
       return exchange::Averaging::kNearest;
     default:
       return exchange::Averaging::kMean;
@@ -86,7 +86,7 @@ Result<LoadedImage> read_of_size(const fs::path& path, Size size) {
 }
 
 // Planes of one file of the folder, or its numbers, into `to` from plane 0 on.
-Result<void> fill(const MapFolder& folder, const std::vector<Plane>& planes, Image<float>& to) {
+Result<void> fill(const MapFolder& folder, const std::vector<MapPlane>& planes, Image<float>& to) {
   const std::string file = origin_of(folder, planes.front()).file;
   Result<LoadedImage> image = LoadedImage{};
   if (!file.empty()) image = read_of_size(folder.folder / file, folder.size);
@@ -139,16 +139,16 @@ Result<material::Surface> surface_of(const MapFolder& folder, int threads) {
   material::Surface surface;
   surface.is_tile = folder.is_tile;
   Image<float> normal(folder.size, 3);
-  if (Result<void> ok = fill(folder, {Plane::kNormalX, Plane::kNormalY, Plane::kNormalZ}, normal); !ok)
+  if (Result<void> ok = fill(folder, {MapPlane::kNormalX, MapPlane::kNormalY, MapPlane::kNormalZ}, normal); !ok)
     return std::move(ok).error();
   surface.slope = slopes_of(normal, threads);
   normal = {};
   surface.lobe = Image<float>(folder.size, 3);
-  if (Result<void> ok = fill(folder, {Plane::kAlpha, Plane::kAlphaAlong, Plane::kYarnDeg}, surface.lobe); !ok)
+  if (Result<void> ok = fill(folder, {MapPlane::kAlpha, MapPlane::kAlphaAlong, MapPlane::kYarnDeg}, surface.lobe); !ok)
     return std::move(ok).error();
-  if (!origin_of(folder, Plane::kOpacity).file.empty()) {
+  if (!origin_of(folder, MapPlane::kOpacity).file.empty()) {
     surface.opacity = Image<float>(folder.size);
-    if (Result<void> ok = fill(folder, {Plane::kOpacity}, surface.opacity); !ok) return std::move(ok).error();
+    if (Result<void> ok = fill(folder, {MapPlane::kOpacity}, surface.opacity); !ok) return std::move(ok).error();
   }
   Result<Image<std::uint16_t>> status = status_of(folder);
   if (!status) return std::move(status).error();
@@ -159,10 +159,10 @@ Result<material::Surface> surface_of(const MapFolder& folder, int threads) {
 // `size` is at most the folder's. Nothing where there are no normals, or no roughness that can be wider.
 Result<LobeOnGrid> lobe_on_grid(const MapFolder& folder, Size size, int threads) {
   LobeOnGrid lobe;
-  const PlaneOrigin alpha = origin_of(folder, Plane::kAlpha), along = origin_of(folder, Plane::kAlphaAlong);
+  const PlaneOrigin alpha = origin_of(folder, MapPlane::kAlpha), along = origin_of(folder, MapPlane::kAlphaAlong);
   const bool has_lobe = !alpha.file.empty() || alpha.constant.has_value();
   const bool can_widen = alpha.constant.value_or(0) < 1 || along.constant.value_or(0) < 1;
-  if (!has_lobe || !can_widen || origin_of(folder, Plane::kNormalX).file.empty()) return lobe;
+  if (!has_lobe || !can_widen || origin_of(folder, MapPlane::kNormalX).file.empty()) return lobe;
   const Result<material::Surface> surface = surface_of(folder, threads);
   if (!surface) return surface.error();
   const bool is_own = size == folder.size;
@@ -183,7 +183,7 @@ SourcePlanes MapPlanes::outline_of(const MapFolder& folder) {
   const View<const float> kSomePixel(&kNoValue, {1, 1}, 1);
   SourcePlanes planes;
   for (std::size_t p = 0; p < planes.size(); ++p) {
-    const PlaneOrigin origin = origin_of(folder, static_cast<Plane>(p));
+    const PlaneOrigin origin = origin_of(folder, static_cast<MapPlane>(p));
     if (origin.file.empty()) {
       planes[p].constant = origin.constant;
     } else {
@@ -193,7 +193,7 @@ SourcePlanes MapPlanes::outline_of(const MapFolder& folder) {
   return planes;
 }
 
-Result<void> MapPlanes::read(const std::string& file, const std::vector<Plane>& planes) {
+Result<void> MapPlanes::read(const std::string& file, const std::vector<MapPlane>& planes) {
   const fs::path path = folder_.folder / file;
   const Result<LoadedImage> image = read_image(path);
   if (!image) return image.error();
@@ -216,7 +216,7 @@ Result<void> MapPlanes::read(const std::string& file, const std::vector<Plane>& 
     }
     planes_[index_of(planes[i])] = {.pixels = plane};
   }
-  if (size_ != folder_.size && planes.front() == Plane::kNormalX) {
+  if (size_ != folder_.size && planes.front() == MapPlane::kNormalX) {
     exchange::reduce_normals({image->channel("X"), image->channel("Y"), image->channel("Z")}, threads_,
                              {kept.plane(0), kept.plane(1), kept.plane(2)});
   }
@@ -232,18 +232,18 @@ Result<void> MapPlanes::find_lobe() {
     lobe_ = std::move(*lobe);
     has_lobe_ = true;
   }
-  if (lobe_.own.planes() == 0 || origin_of(folder_, Plane::kAlpha).file.empty()) return {};
-  for (const Plane plane : kLobePlanes)
+  if (lobe_.own.planes() == 0 || origin_of(folder_, MapPlane::kAlpha).file.empty()) return {};
+  for (const MapPlane plane : kLobePlanes)
     planes_[index_of(plane)] = {
-        .pixels = lobe_.own.plane(static_cast<int>(plane) - static_cast<int>(Plane::kAlpha))};
+        .pixels = lobe_.own.plane(static_cast<int>(plane) - static_cast<int>(MapPlane::kAlpha))};
   return {};
 }
 
-Result<void> MapPlanes::load(const std::set<Plane>& wanted) {
-  std::map<std::string, std::vector<Plane>> by_file;
+Result<void> MapPlanes::load(const std::set<MapPlane>& wanted) {
+  std::map<std::string, std::vector<MapPlane>> by_file;
   std::set<std::string> needed;
   for (std::size_t p = 0; p < planes_.size(); ++p) {
-    const auto plane = static_cast<Plane>(p);
+    const auto plane = static_cast<MapPlane>(p);
     const PlaneOrigin origin = origin_of(folder_, plane);
     if (origin.file.empty()) {
       planes_[p] = {.constant = origin.constant};
@@ -255,14 +255,14 @@ Result<void> MapPlanes::load(const std::set<Plane>& wanted) {
   for (const auto& [file, planes] : by_file) {
     if (needed.contains(file)) continue;
     loaded_.erase(file);
-    for (const Plane plane : planes) planes_[index_of(plane)] = {.constant = 0};
+    for (const MapPlane plane : planes) planes_[index_of(plane)] = {.constant = 0};
   }
   for (const std::string& file : needed) {
     if (loaded_.contains(file)) continue;
     if (Result<void> ok = read(file, by_file[file]); !ok) return ok;
   }
   const bool asks_for_lobe =
-      std::ranges::any_of(kLobePlanes, [&](Plane plane) { return wanted.contains(plane); });
+      std::ranges::any_of(kLobePlanes, [&](MapPlane plane) { return wanted.contains(plane); });
   return asks_for_lobe ? find_lobe() : Result<void>();
 }
 
@@ -272,13 +272,13 @@ exchange::ChannelFacts channel_facts(const MapFolder& folder, const SourcePlanes
     facts.height_least_mm = height->constant.value_or(height->least);
     facts.height_most_mm = height->constant.value_or(height->most);
   }
-  const auto pixels = [&](Plane plane) { return planes[index_of(plane)].pixels; };
-  if (!pixels(Plane::kAlbedoR).empty())
+  const auto pixels = [&](MapPlane plane) { return planes[index_of(plane)].pixels; };
+  if (!pixels(MapPlane::kAlbedoR).empty())
     facts.mean_luminance =
-        exchange::mean_luminance({pixels(Plane::kAlbedoR), pixels(Plane::kAlbedoG), pixels(Plane::kAlbedoB)});
-  if (!pixels(Plane::kNormalX).empty())
+        exchange::mean_luminance({pixels(MapPlane::kAlbedoR), pixels(MapPlane::kAlbedoG), pixels(MapPlane::kAlbedoB)});
+  if (!pixels(MapPlane::kNormalX).empty())
     facts.mean_slope =
-        exchange::mean_slope({pixels(Plane::kNormalX), pixels(Plane::kNormalY), pixels(Plane::kNormalZ)});
+        exchange::mean_slope({pixels(MapPlane::kNormalX), pixels(MapPlane::kNormalY), pixels(MapPlane::kNormalZ)});
   return facts;
 }
 

@@ -32,7 +32,7 @@ class MapPlanes {
 
   /// Reads what `wanted` needs and lets go of the files that it does not need. kBadData with the file: it is
   /// of another size, lacks a channel, or holds a value that is no finite number.
-  Result<void> load(const std::set<exchange::Plane>& wanted);
+  Result<void> load(const std::set<exchange::MapPlane>& wanted);
 
   /// What is loaded; of files that are not, an empty plane with a number, so that it counts as there.
   const exchange::SourcePlanes& planes() const { return planes_; }
@@ -46,13 +46,13 @@ class MapPlanes {
   static exchange::SourcePlanes outline_of(const MapFolder& folder);
 
  private:
-  Result<void> read(const std::string& file, const std::vector<exchange::Plane>& planes);
+  Result<void> read(const std::string& file, const std::vector<exchange::MapPlane>& planes);
   Result<void> find_lobe();
 
   const MapFolder& folder_;
   Size size_;
   int threads_;
-  std::map<std::string, Image<float>> loaded_;  ///< by file, planes in the order of exchange::Plane
+  std::map<std::string, Image<float>> loaded_;  ///< by file, planes in the order of exchange::MapPlane
   exchange::SourcePlanes planes_;
   LobeOnGrid lobe_;
   bool has_lobe_ = false;

@@ -135,7 +135,7 @@ Result<Json> digests_of(const MapFolder& folder, const FilledPreset& filled) {
   std::set<std::string> files;
   for (const TextureToWrite& texture : filled.textures) {
     for (const std::string& name : texture.file.channels) {
-      for (const exchange::Plane plane : exchange::channel_named(name)->planes)
+      for (const exchange::MapPlane plane : exchange::channel_named(name)->planes)
         files.insert(origin_of(folder, plane).file);
     }
   }
@@ -259,7 +259,7 @@ std::vector<std::string> needed_maps(const ExportOptions& options) {
       for (const std::string& channel : file.channels) {
         const exchange::Channel* const known = exchange::channel_named(channel);
         if (known == nullptr || file.is_optional) continue;
-        for (const exchange::Plane plane : known->planes) needed.insert(exchange::kind_of(plane).map);
+        for (const exchange::MapPlane plane : known->planes) needed.insert(exchange::kind_of(plane).map);
       }
     }
   }

@@ -14,7 +14,7 @@
 namespace weft::app {
 namespace {
 
-using exchange::Parameter;
+using exchange::TexturedParameter;
 using exchange::Texture;
 using exchange::TexturedMaterial;
 
@@ -39,7 +39,7 @@ std::optional<FoundChannels> find_channels(const ClothTextures& cloth,
 
 // The source of the map that the first channel comes from.
 std::string source_in(const MapFolder& maps, const exchange::Channel& channel) {
-  for (const exchange::Plane plane : channel.planes) {
+  for (const exchange::MapPlane plane : channel.planes) {
     if (const MapFacts* map = maps.map(exchange::kind_of(plane).map)) return name_of(map->source);
   }
   return "assumed";
@@ -58,11 +58,11 @@ Texture texture_of(const FoundChannels& found, std::size_t count, const exchange
   return texture;
 }
 
-std::optional<Parameter> parameter_of(const ClothTextures& cloth, const std::vector<std::string>& channels) {
+std::optional<TexturedParameter> parameter_of(const ClothTextures& cloth, const std::vector<std::string>& channels) {
   const std::optional<FoundChannels> found = find_channels(cloth, channels);
   if (!found) return std::nullopt;
   const exchange::Channel& first = *exchange::channel_named(channels.front());
-  Parameter parameter = {.texture = texture_of(*found, channels.size(), first),
+  TexturedParameter parameter = {.texture = texture_of(*found, channels.size(), first),
                          .source = source_in(cloth.maps, first)};
   const exchange::ChannelFacts facts = channel_facts(cloth.maps, {});
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -83,7 +83,7 @@ bool is_same_everywhere(const ExportedTexture& file, const Texture& texture) {
   return std::all_of(first, first + static_cast<std::ptrdiff_t>(texture.channels.size()), is_one_number);
 }
 
-bool is_flat(const Parameter& normal) {
+bool is_flat(const TexturedParameter& normal) {
   return normal.constant[0] == 0 && normal.constant[1] == 0;
 }
 
@@ -108,31 +108,31 @@ class Constants {
   }
 
  private:
-  bool is_same(const Parameter& parameter) const {
+  bool is_same(const TexturedParameter& parameter) const {
     const auto file = std::ranges::find(files_, parameter.texture->file, &ExportedTexture::file);
     return is_same_everywhere(*file, *parameter.texture);
   }
 
   // A group that stands in one file leaves as numbers altogether, or not at all.
-  void together(std::initializer_list<std::optional<Parameter>*> group) {
+  void together(std::initializer_list<std::optional<TexturedParameter>*> group) {
     std::set<std::string> varying;
-    for (const std::optional<Parameter>* each : group) {
+    for (const std::optional<TexturedParameter>* each : group) {
       if (*each && (*each)->texture && !is_same(**each)) varying.insert((*each)->texture->file);
     }
-    for (std::optional<Parameter>* each : group) {
+    for (std::optional<TexturedParameter>* each : group) {
       if (*each && (*each)->texture && !varying.contains((*each)->texture->file)) (*each)->texture.reset();
     }
   }
 
   TexturedMaterial& material_;
   const std::vector<ExportedTexture>& files_;
-  std::optional<Parameter> base_color_ = material_.base_color;
+  std::optional<TexturedParameter> base_color_ = material_.base_color;
 };
 
 // Reflectance itself, or over 0.08, which uses more of the steps of a file.
-std::optional<Parameter> reflectance_of(const ClothTextures& cloth) {
-  if (std::optional<Parameter> plain = parameter_of(cloth, {"f0"})) return plain;
-  std::optional<Parameter> scaled = parameter_of(cloth, {"specular"});
+std::optional<TexturedParameter> reflectance_of(const ClothTextures& cloth) {
+  if (std::optional<TexturedParameter> plain = parameter_of(cloth, {"f0"})) return plain;
+  std::optional<TexturedParameter> scaled = parameter_of(cloth, {"specular"});
   if (!scaled) return scaled;
   constexpr double kF0OfSpecular = 0.08;
   scaled->texture->scale *= kF0OfSpecular;
@@ -182,7 +182,7 @@ TexturedMaterial textured_material(const ClothTextures& cloth) {
     material.size_mm = {preset.pitch_mm[0] * preset.size.width, preset.pitch_mm[1] * preset.size.height};
   material.repeats = maps.is_tile;
   material.base_color =
-      of({"albedo.r", "albedo.g", "albedo.b"}).value_or(Parameter{.constant = {0.5, 0.5, 0.5}});
+      of({"albedo.r", "albedo.g", "albedo.b"}).value_or(TexturedParameter{.constant = {0.5, 0.5, 0.5}});
   material.normal = of({"normal.x", "normal.y", "normal.z"});
   material.height_mm = of({"height"});
   material.roughness = of({"roughness.least"});

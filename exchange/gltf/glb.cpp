@@ -64,7 +64,7 @@ class MaterialWriter {
 
   Result<void> put_base() {
     Json& pbr = document_["pbrMetallicRoughness"];
-    const Parameter& color = material_.base_color;
+    const TexturedParameter& color = material_.base_color;
     const auto& opacity = material_.opacity;
     std::array<double, 4> factor = {color.constant[0], color.constant[1], color.constant[2],
                                     opacity ? opacity->constant[0] : 1};
@@ -263,7 +263,7 @@ struct Buffer {
 };
 
 /// The rectangle's primitive: corners from the lower left, counterclockwise.
-Json primitive_of(const Plane& plane, Buffer& buffer) {
+Json primitive_of(const ShownPlane& plane, Buffer& buffer) {
   const auto x = static_cast<float>(plane.size_m[0] / 2), y = static_cast<float>(plane.size_m[1] / 2);
   const auto position = buffer.add_vectors({-x, -y, 0, x, -y, 0, x, y, 0, -x, y, 0}, "VEC3");
   buffer.accessors[position]["min"] = {-x, -y, 0};
@@ -280,7 +280,7 @@ Json primitive_of(const Plane& plane, Buffer& buffer) {
       {"material", 0}};
 }
 
-Json provenance_of(const TexturedMaterial& material, const Plane& plane) {
+Json provenance_of(const TexturedMaterial& material, const ShownPlane& plane) {
   Json extras = {{"size_mm", nullptr}};
   if (material.size_mm) {
     extras["size_mm"] = *material.size_mm;

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "exchange/materialx/mtlx_document.h"
-#include "exchange/materialx/surface.h"
+#include "exchange/materialx/mtlx_surface.h"
 
 namespace weft::exchange {
 

@@ -3,7 +3,7 @@
 #include <deque>
 
 #include "exchange/materialx/mtlx_document.h"
-#include "exchange/materialx/surface.h"
+#include "exchange/materialx/mtlx_surface.h"
 
 namespace weft::exchange {
 

@@ -96,8 +96,8 @@ float specular_tint(const float* in, const ChannelFacts& /*facts*/) {
 
 std::vector<Channel> all_channels() {
   using enum ChannelKind;
-  using enum Plane;
-  const std::vector<Plane> rgb = {kAlbedoR, kAlbedoG, kAlbedoB}, xyz = {kNormalX, kNormalY, kNormalZ},
+  using enum MapPlane;
+  const std::vector<MapPlane> rgb = {kAlbedoR, kAlbedoG, kAlbedoB}, xyz = {kNormalX, kNormalY, kNormalZ},
                            alphas = {kAlpha, kAlphaAlong}, lobe = {kAlpha, kAlphaAlong, kYarnDeg};
   return {{"albedo.r", "diffuse reflectance, red", kColor, "", 0, 1, {kAlbedoR}, same},
           {"albedo.g", "green", kColor, "", 0, 1, {kAlbedoG}, same},

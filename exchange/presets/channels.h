@@ -16,7 +16,7 @@
 namespace weft::exchange {
 
 /// The planes of a folder of maps (docs/formats.md), in the order of kPlaneKinds.
-enum class Plane : std::size_t {
+enum class MapPlane : std::size_t {
   kAlbedoR,
   kAlbedoG,
   kAlbedoB,
@@ -72,7 +72,7 @@ inline constexpr std::array<PlaneKind, kPlanes> kPlaneKinds = {{{"albedo", "R"},
                                                                 {"specular_tint", "R", 1},
                                                                 {"specular_tint", "G", 1},
                                                                 {"specular_tint", "B", 1}}};
-constexpr const PlaneKind& kind_of(Plane plane) {
+constexpr const PlaneKind& kind_of(MapPlane plane) {
   return kPlaneKinds[static_cast<std::size_t>(plane)];
 }
 
@@ -123,7 +123,7 @@ struct Channel {
   ChannelKind kind;
   const char* unit;            ///< empty: none
   double least = 0, most = 1;  ///< of the value; of `height` those of the facts
-  std::vector<Plane> planes;   ///< what it is computed from
+  std::vector<MapPlane> planes;   ///< what it is computed from
   float (*value)(const float* planes, const ChannelFacts& facts);  ///< of one pixel
   std::optional<float> neutral = {};  ///< the value of a cloth that has nothing of the kind
 };

@@ -42,8 +42,8 @@ void reduce_direction(const PresetFile& file, const std::string& stem, const Ima
 }
 
 // Where a plane stands among those of a level of the lobe.
-std::optional<int> place_in_lobe(Plane plane) {
-  constexpr std::array kLobe = {Plane::kAlpha, Plane::kAlphaAlong, Plane::kYarnDeg};
+std::optional<int> place_in_lobe(MapPlane plane) {
+  constexpr std::array kLobe = {MapPlane::kAlpha, MapPlane::kAlphaAlong, MapPlane::kYarnDeg};
   const auto* found = std::ranges::find(kLobe, plane);
   if (found == kLobe.end()) return std::nullopt;
   return static_cast<int>(found - kLobe.begin());
@@ -53,7 +53,7 @@ std::optional<int> place_in_lobe(Plane plane) {
 
 bool is_of_lobe(const Channel& channel) {
   return !channel.planes.empty() &&
-         std::ranges::all_of(channel.planes, [](Plane plane) { return place_in_lobe(plane).has_value(); });
+         std::ranges::all_of(channel.planes, [](MapPlane plane) { return place_in_lobe(plane).has_value(); });
 }
 
 void put_lobe(const PresetFile& file, const ChannelFacts& facts, LobeLevels lobe, int level,

@@ -12,7 +12,7 @@
 namespace weft::exchange {
 namespace {
 
-const SourcePlane& plane_in(const SourcePlanes& planes, Plane plane) {
+const SourcePlane& plane_in(const SourcePlanes& planes, MapPlane plane) {
   return planes[static_cast<std::size_t>(plane)];
 }
 
@@ -31,7 +31,7 @@ struct Cursor {
   float at(int x) const { return row == nullptr ? constant : row[x]; }
 };
 
-Cursor cursor_of(const SourcePlanes& planes, Plane plane, int y) {
+Cursor cursor_of(const SourcePlanes& planes, MapPlane plane, int y) {
   const SourcePlane& source = plane_in(planes, plane);
   if (!source.pixels.empty()) return {source.pixels.row(y), 0};
   return {nullptr, static_cast<float>(source.constant.value_or(kind_of(plane).otherwise.value_or(0)))};
@@ -69,7 +69,7 @@ bool is_display_color(const PresetFile& file, const Channel& channel) {
 
 Result<void> check_file(const PresetFile& file, const SourcePlanes& planes, const std::string& preset) {
   for (const std::string& name : file.channels) {
-    for (const Plane plane : channel_named(name)->planes) {
+    for (const MapPlane plane : channel_named(name)->planes) {
       const PlaneKind& kind = kind_of(plane);
       if (plane_in(planes, plane).is_there() || kind.otherwise) continue;
       return Error{ErrorKind::kBadData, "the preset asks for a map that is not there",

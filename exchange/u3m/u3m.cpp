@@ -122,7 +122,7 @@ class FrontWriter {
 
   static Json number(double constant) { return {{"constant", constant}, {"texture", nullptr}}; }
 
-  void put_scalar(const char* member, const std::optional<Parameter>& parameter, const char* name,
+  void put_scalar(const char* member, const std::optional<TexturedParameter>& parameter, const char* name,
                   double otherwise, double scale = 1) {
     Json entry = number(parameter ? parameter->constant[0] * scale : otherwise);
     if (parameter && parameter->texture) {
@@ -204,7 +204,7 @@ class FrontWriter {
   }
 
   void put_base() {
-    const Parameter& color = material_.base_color;
+    const TexturedParameter& color = material_.base_color;
     Json entry = {{"constant", constant_color(color.constant)}, {"texture", nullptr}};
     if (color.texture) {
       const Texture& texture = *color.texture;

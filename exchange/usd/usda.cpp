@@ -52,7 +52,7 @@ void write_layer_data(UsdaWriter& usda, const TexturedMaterial& material, const 
   usda.end_list(")");
 }
 
-void write_mesh(UsdaWriter& usda, const Plane& plane, const std::string& material_path) {
+void write_mesh(UsdaWriter& usda, const ShownPlane& plane, const std::string& material_path) {
   const double x = plane.size_m[0] / 2, y = plane.size_m[1] / 2;
   const double u = plane.tiles[0], v = plane.tiles[1];
   const auto corners = [](double x0, double y0, double x1, double y1, bool has_z) {

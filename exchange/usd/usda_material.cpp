@@ -87,7 +87,7 @@ class PreviewSurface {
   }
 
   void color() {
-    const Parameter& color = material_.base_color;
+    const TexturedParameter& color = material_.base_color;
     const std::string input = "color3f inputs:diffuseColor";
     if (color.texture) {
       const double s = color.texture->scale, o = color.texture->offset;
@@ -97,7 +97,7 @@ class PreviewSurface {
     }
   }
 
-  void scalar(const std::string& name, const std::optional<Parameter>& parameter) {
+  void scalar(const std::string& name, const std::optional<TexturedParameter>& parameter) {
     if (!parameter) return;
     const std::string input = "float inputs:" + name;
     if (parameter->texture) {

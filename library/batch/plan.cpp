@@ -90,7 +90,7 @@ Result<Described> from_line(std::string_view line, const std::string& where) {
 
 }  // namespace
 
-void describe(Fields& fields, Product& p) {
+void describe(Fields& fields, BatchProduct& p) {
   fields.value({"keep", "Maps that stay, by name; none: all", {}, kMustSay}, p.keep);
   fields.value({"half", "Normals as half floats"}, p.half);
   fields.value({"compression", "Of EXR files", {}, kMustSay}, p.compression);
@@ -139,7 +139,7 @@ void describe(Fields& fields, PlannedSolve& j) {
   fields.value({"write_bytes", "That it writes", {}, kMustSay}, j.write_bytes);
 }
 
-void describe(Fields& fields, LeftOut& l) {
+void describe(Fields& fields, SkippedSession& l) {
   fields.value({"session", "Its folder", {}, kMustSay}, l.session);
   fields.choice({"left_out", "Why it is not solved", {}, kMustSay}, l.reason, kReasonNames);
   fields.value({"kind", "Of an error", {}, kMustSay}, l.kind);
@@ -233,7 +233,7 @@ std::string text_of(Plan& plan) {
     task.memory_bytes = std::max(task.memory_bytes, planned.memory_bytes);
     lines += line;
   }
-  for (const LeftOut& left : plan.left_out) lines += line_of(object_of(left));
+  for (const SkippedSession& left : plan.left_out) lines += line_of(object_of(left));
   header.sessions = static_cast<int>(plan.solves.size());
   header.left_out = static_cast<int>(plan.left_out.size());
   header.id = id_of(document_of(header), lines);
@@ -282,7 +282,7 @@ Result<Plan> plan_from_text(std::string_view text, const std::string& where) {
     if (wrong) return;
     const Json json = Json::parse(line, nullptr, false);
     if (json.is_object() && json.contains("left_out")) {
-      Result<LeftOut> left = read_fields<LeftOut>(json, where);
+      Result<SkippedSession> left = read_fields<SkippedSession>(json, where);
       if (!left) wrong = std::move(left).error();
       if (left) plan.left_out.push_back(std::move(*left));
       return;

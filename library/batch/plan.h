@@ -23,14 +23,14 @@ namespace weft::batch {
 inline constexpr const char* kPlanSchema = "weft.batch/1";  // 1.1 where shares of the cloth are in it
 
 /// What becomes of each solve besides its level.
-struct Product {
+struct BatchProduct {
   std::vector<std::string> keep = {};  ///< maps that stay, by name: "normal"; none: all
   bool half = false;                   ///< normals as half floats
   std::string compression = "none";    ///< of EXR files
   std::vector<std::string> then = {};  ///< made of it afterwards: "maps", "export:unreal"
 
   bool is_whole() const { return keep.empty() && !half; }
-  friend bool operator==(const Product&, const Product&) = default;
+  friend bool operator==(const BatchProduct&, const BatchProduct&) = default;
 };
 
 /// A calibration that is used in place of the own ones of a rig's sessions.
@@ -75,14 +75,14 @@ struct PlannedSolve {
 enum class Reason { kThere, kUnsolvable, kTurnsLittle, kNotGoodEnough };
 inline constexpr std::array kReasonNames = {"there", "unsolvable", "turns_little", "not_good_enough"};
 
-struct LeftOut {
+struct SkippedSession {
   std::string session;
   Reason reason = Reason::kThere;
   std::string kind = {};  ///< of an error: name_of(ErrorKind)
   std::string said;       ///< one sentence
   double seconds = 0;     ///< that are saved
 
-  friend bool operator==(const LeftOut&, const LeftOut&) = default;
+  friend bool operator==(const SkippedSession&, const SkippedSession&) = default;
 };
 
 /// Adds up the errors of many cloths: their mean over all that has a normal.
@@ -131,7 +131,7 @@ struct Header {
   std::string id;       ///< 16 hexadecimal digits of the SHA-256 of all else
   std::string archive;  ///< the folder that holds all sessions
   std::string output;   ///< folder for solves beside the archive; empty: each in its session
-  Product product;
+  BatchProduct product;
   std::vector<NamedCalibration> calibrations;
   int solver_version = 0;
   int threads = 0;  ///< that the seconds hold for
@@ -148,13 +148,13 @@ struct Header {
 struct Plan {
   Header header;
   std::vector<PlannedSolve> solves;  ///< by task
-  std::vector<LeftOut> left_out;
+  std::vector<SkippedSession> left_out;
 
   friend bool operator==(const Plan&, const Plan&) = default;
 };
 
 void describe(Fields& fields, PlannedSolve& planned);
-void describe(Fields& fields, LeftOut& left_out);
+void describe(Fields& fields, SkippedSession& left_out);
 void describe(Fields& fields, Header& header);
 
 /// SHA-256 of what a solve depends on in session.json: all but what people say of the cloth (fabric,

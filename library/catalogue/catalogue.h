@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "library/catalogue/database.h"
 #include "library/catalogue/metadata.h"

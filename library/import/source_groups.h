@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "library/import/name_pattern.h"
 #include "library/import/source_folders.h"

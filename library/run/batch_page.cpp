@@ -152,7 +152,7 @@ report::Section left_out_section(const BatchState& state) {
   if (state.plan.left_out.empty()) return {};
   report::Section section = {.title = "Left out by the plan"};
   section.table = report::Table{.header = {"session", "why", ""}};
-  for (const batch::LeftOut& left : state.plan.left_out) {
+  for (const batch::SkippedSession& left : state.plan.left_out) {
     if (is_full(section)) break;
     section.table->rows.push_back(
         {name_in(left.session), batch::kReasonNames[static_cast<std::size_t>(left.reason)], left.said});

@@ -46,7 +46,7 @@ void forget_peak_memory() {
   std::ofstream("/proc/self/clear_refs") << 5;
 }
 
-Result<FollowUpPrice> try_follow_ups(const Candidate& candidate, const batch::Product& product,
+Result<FollowUpPrice> try_follow_ups(const Candidate& candidate, const batch::BatchProduct& product,
                                      const fs::path& aside, const JobContext& context) {
   const Result<Session> session = read_session(candidate.input.folder);
   if (!session) return session.error();
@@ -73,7 +73,7 @@ Result<FollowUpPrice> try_follow_ups(const Candidate& candidate, const batch::Pr
 
 }  // namespace
 
-Result<std::vector<std::string>> make_follow_ups(const SolveOfSession& of, const batch::Product& product,
+Result<std::vector<std::string>> make_follow_ups(const SolveOfSession& of, const batch::BatchProduct& product,
                                                  const JobContext& context) {
   std::vector<std::string> made;
   fs::path maps;
@@ -111,7 +111,7 @@ FollowUpPrice FollowUpPrice::of(double other_megapixels) const {
   return {other_megapixels, times * seconds, scaled(memory_bytes), scaled(write_bytes)};
 }
 
-Result<FollowUpPrice> price_follow_ups(const Candidate& candidate, const batch::Product& product,
+Result<FollowUpPrice> price_follow_ups(const Candidate& candidate, const batch::BatchProduct& product,
                                        const JobContext& context) {
   const TemporaryFolder aside;
   Result<FollowUpPrice> price = try_follow_ups(candidate, product, aside.path(), context);

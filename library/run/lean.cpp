@@ -35,18 +35,18 @@ Result<void> halve_normals(const fs::path& file, Compression compression) {
 
 }  // namespace
 
-std::string lean_id(const std::string& solve, const batch::Product& product) {
+std::string lean_id(const std::string& solve, const batch::BatchProduct& product) {
   if (product.is_whole()) return solve;
   return product_id({{"solve", solve}, {"keep", sorted(product.keep)}, {"half", product.half}});
 }
 
-Compression compression_of(const batch::Product& product) {
+Compression compression_of(const batch::BatchProduct& product) {
   const auto found = std::ranges::find(kCompressionNames, product.compression);
   return found == kCompressionNames.end() ? Compression::kNone
                                           : static_cast<Compression>(found - kCompressionNames.begin());
 }
 
-Result<void> make_lean(const fs::path& solve, const batch::Product& product, const std::string& id) {
+Result<void> make_lean(const fs::path& solve, const batch::BatchProduct& product, const std::string& id) {
   const auto is_kept = [&](const std::string& name) {
     return product.keep.empty() || std::ranges::find(product.keep, name) != product.keep.end();
   };

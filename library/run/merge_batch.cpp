@@ -92,7 +92,7 @@ void describe(Fields& fields, ListedPicture& p) {
 }
 
 void describe(Fields& fields, ListedLeftOut& l) {
-  batch::LeftOut& of = l.left_out;
+  batch::SkippedSession& of = l.left_out;
   fields.value({"session", "Its folder", {}, kMustSay}, of.session);
   fields.choice({"left_out", "Why it is not solved", {}, kMustSay}, of.reason, batch::kReasonNames);
   fields.value({"said", "One sentence"}, of.said);
@@ -136,7 +136,7 @@ Result<MergeReport> merge_batch(const fs::path& plan, const JobContext& context)
   if (Result<void> ok = write_pictures(*state, report.folder, drawn, context); !ok)
     return std::move(ok).error();
   BatchReportFacts facts = {state->plan.header.id, {state->summary, state->rows}, {}, {}, report.abandoned};
-  for (const batch::LeftOut& left : state->plan.left_out) facts.left_out.push_back({left});
+  for (const batch::SkippedSession& left : state->plan.left_out) facts.left_out.push_back({left});
   for (const DrawnChange& each : drawn) facts.pictures.push_back({each.session, each.file});
   Json document = {{"schema", kReportSchema}};
   write_fields(document, std::move(facts));

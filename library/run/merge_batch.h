@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "library/batch/plan.h"
 #include "library/batch/summary.h"
@@ -46,7 +46,7 @@ void describe(Fields& fields, ListedPicture& picture);
 
 /// A session that was not solved, as the report lists it.
 struct ListedLeftOut {
-  batch::LeftOut left_out;
+  batch::SkippedSession left_out;
 };
 
 /// What report.json says of a batch (weft.batch-report/1.1).

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 #include "library/batch/plan.h"
@@ -19,7 +19,7 @@ struct PlanBatchOptions {
   std::optional<double> to_deg = {};            ///< of each session the cheapest level that is so close
   std::optional<double> within_seconds = {};    ///< for all: spent where a second buys most degrees
   std::optional<double> least_change_deg = {};  ///< maps that would turn by less are left as they are
-  batch::Product product;
+  batch::BatchProduct product;
   /// In place of the own ones of the sessions of their rigs.
   std::vector<std::filesystem::path> calibrations;
   int sample = 50;           ///< sessions that are measured

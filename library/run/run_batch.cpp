@@ -415,7 +415,7 @@ class BatchRun {
   const PlanFile plan_;
   const JobContext& context_;
   const AfterSession& after_;
-  batch::Product product_;
+  batch::BatchProduct product_;
   fs::path scratch_;
   std::vector<Item> items_;
   std::vector<Active> active_;

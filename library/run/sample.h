@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "library/batch/forecast.h"
 #include "library/batch/plan.h"
@@ -15,7 +15,7 @@ namespace weft::app {
 
 /// What is measured on a session.
 struct SampleOptions {
-  const batch::Product& product;
+  const batch::BatchProduct& product;
   std::optional<solver::Level> only = {};  ///< this level alone; none: all
   std::optional<SharedSeconds>& shared;    ///< of the sessions before
 };

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "library/batch/outcome.h"
 #include "library/batch/plan.h"
 
@@ -14,7 +14,7 @@ namespace weft::app {
 struct SessionWork {
   const batch::Header* header = nullptr;
   batch::PlannedSolve planned;
-  batch::Product product;         ///< what is kept
+  batch::BatchProduct product;         ///< what is kept
   std::filesystem::path session;  ///< where it is now: as planned, or fetched
   std::filesystem::path solves;   ///< its solves go here by their id
 };

@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Bytes a pixel of the maps that stay, as docs/formats.md has them.
-double map_bytes(const batch::Product& product) {
+double map_bytes(const batch::BatchProduct& product) {
   double bytes = 0;
   for (const auto& [name, each] : std::map<std::string, double>{{"normal", product.half ? 6 : 12},
                                                                 {"albedo", 6},
@@ -92,7 +92,7 @@ Result<std::uint64_t> bytes_of_frames(const SolvePlan& plan) {
 
 void add_levels(SolvePlan& plan, const SurveyOptions& options, Candidate& candidate) {
   const fs::path parent = batch::solve_parent(options.header, candidate.input.folder.string());
-  const batch::Product& product = options.header.product;
+  const batch::BatchProduct& product = options.header.product;
   for (const solver::MethodName& method : solver::method_names()) {
     if (!method.level) continue;
     plan.extent = method.extent;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "library/batch/forecast.h"

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "material/assets/build.h"
 

@@ -7,7 +7,7 @@
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 #include "material/run/maps.h"
-#include "material/run/price.h"
+#include "material/run/maps_price.h"
 
 namespace weft::app {
 

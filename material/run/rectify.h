@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/json_document.h"
 #include "core/base/product.h"
 #include "core/base/result.h"

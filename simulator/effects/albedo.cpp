@@ -76,7 +76,7 @@ class Dye {
 }  // namespace
 
 Pass dye_pass(const Scene& scene, bool seen_by_camera) {
-  return {"dye", "gives each yarn its albedo", Stage::kSurface,
+  return {"dye", "gives each yarn its albedo", PassStage::kSurface,
           [dye = Dye(scene, ColourOf(scene, seen_by_camera))](PassTile& tile) {
             for (std::size_t i = 0; i < tile.surface.size(); ++i)
               tile.albedo[i] = dye.of(tile.surface[i].yarn);
@@ -84,7 +84,7 @@ Pass dye_pass(const Scene& scene, bool seen_by_camera) {
 }
 
 Pass albedo_pass(const Scene& scene, bool seen_by_camera) {
-  return {"albedo", "gives the cloth its one albedo", Stage::kSurface,
+  return {"albedo", "gives the cloth its one albedo", PassStage::kSurface,
           [albedo = ColourOf(scene, seen_by_camera)({}, {})](PassTile& tile) {
             std::fill(tile.albedo.begin(), tile.albedo.end(), albedo);
           }};

@@ -6,7 +6,7 @@ namespace weft::simulator {
 
 Pass chromatic_aberration_pass(const Scene& scene, const SceneRig& rig, const Halos& halos) {
   return {
-      "lateral colour", "shows red and blue at another scale than green", Stage::kShot,
+      "lateral colour", "shows red and blue at another scale than green", PassStage::kShot,
       [lens = LateralColour(scene.camera.chromatic, rig.camera), halo = halos.bloom_rows](PassTile& tile) {
         const Rect shown_rect = grown(tile.rect, halo);
         std::vector<Rgb> shown(static_cast<std::size_t>(shown_rect.pixels()));

@@ -12,13 +12,13 @@ Pass geometry_pass(const Scene& scene) {
       }
     };
   };
-  return {"geometry", "gives the cloth its height, normal and yarn in closed form", Stage::kSurface,
+  return {"geometry", "gives the cloth its height, normal and yarn in closed form", PassStage::kSurface,
           std::visit([&](const auto& surface) -> std::function<void(PassTile&)> { return pass(surface); },
                      surface_of(scene.geometry))};
 }
 
 Pass relief_pass() {
-  return {"relief", "lifts each point from the plane to the cloth's height", Stage::kSurface,
+  return {"relief", "lifts each point from the plane to the cloth's height", PassStage::kSurface,
           [](PassTile& tile) {
             for (std::size_t i = 0; i < tile.surface.size(); ++i)
               tile.point_mm[i].z += tile.surface[i].height_mm;

@@ -50,7 +50,7 @@ Rect common(Rect a, Rect b) {
 }  // namespace
 
 Pass damage_pass(const Scene& scene) {
-  return {"damage", "makes parts of frames missing, saturated, black or fade", Stage::kShot,
+  return {"damage", "makes parts of frames missing, saturated, black or fade", PassStage::kShot,
           [parts = parts_of(scene)](PassTile& tile) {
             const auto channels = tile.samples.size() / static_cast<std::size_t>(std::max<std::int64_t>(
                                                             tile.sample_rect.pixels(), 1));

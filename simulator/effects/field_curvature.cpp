@@ -6,7 +6,7 @@
 namespace weft::simulator {
 
 Pass field_curvature_pass(const Scene& scene, const SceneRig& rig, const Halos& halos) {
-  return {"field curvature", "blurs by a disc that grows towards the corners", Stage::kShot,
+  return {"field curvature", "blurs by a disc that grows towards the corners", PassStage::kShot,
           [field = FieldCurvature(scene.camera.field, rig.camera),
            halo = halos.of_signal() - halos.field](PassTile& tile) {
             const Rect blurred_rect = grown(tile.rect, halo);

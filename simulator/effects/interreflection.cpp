@@ -13,7 +13,7 @@ Pass bounces_pass(const Scene& scene, const Halos& halos) {
   settings.seed = static_cast<std::uint64_t>(scene.seed);
   settings.stream = kBounceStream;
   const int halo = halos.of_signal() + (halos.bounces - 1) * halos.bounce;
-  return {"bounces", "follows light from cloth to cloth, once for all LEDs", Stage::kSurface,
+  return {"bounces", "follows light from cloth to cloth, once for all LEDs", PassStage::kSurface,
           [settings, halo](PassTile& tile) {
             if (tile.failure) return;
             std::vector<Vec3> normals(tile.surface.size());
@@ -37,7 +37,7 @@ Pass bounces_pass(const Scene& scene, const Halos& halos) {
 }
 
 Pass interreflection_pass(const Scene& scene, const SceneRig& rig) {
-  return {"interreflection", "adds the light that reaches each point by way of the cloth", Stage::kLight,
+  return {"interreflection", "adds the light that reaches each point by way of the cloth", PassStage::kLight,
           [unit = rig.signal_of_unit(scene.camera.iso), bounces = scene.transport.bounces](PassTile& tile) {
             tile.indirect.assign(tile.irradiance.size(), Rgb{});
             if (tile.led == 0 || tile.failure) return;

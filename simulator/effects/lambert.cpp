@@ -4,7 +4,7 @@
 namespace weft::simulator {
 
 Pass lambert_pass(const Scene& scene, const SceneRig& rig) {
-  return {"lambert", "reflects light alike in all directions", Stage::kLight,
+  return {"lambert", "reflects light alike in all directions", PassStage::kLight,
           [unit = rig.signal_of_unit(scene.camera.iso)](PassTile& tile) {
             tile.signal_rect = tile.area;
             tile.signal.resize(tile.irradiance.size());

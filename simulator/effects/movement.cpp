@@ -7,7 +7,7 @@
 namespace weft::simulator {
 
 Pass onto_moved_cloth_pass(const Scene& scene) {
-  return {"movement", "shifts and turns the cloth a little for each shot", Stage::kSurface,
+  return {"movement", "shifts and turns the cloth a little for each shot", PassStage::kSurface,
           [settings = scene.camera.movement, key = random_key(scene)](PassTile& tile) {
             const ClothMovement movement = movement_of_shot(settings, tile.take, key);
             for (Vec3& point : tile.point_mm) point = movement.on_cloth(point);
@@ -15,7 +15,7 @@ Pass onto_moved_cloth_pass(const Scene& scene) {
 }
 
 Pass back_from_moved_cloth_pass(const Scene& scene) {
-  return {"moved back", "brings points and normals of the moved cloth back to the rig", Stage::kSurface,
+  return {"moved back", "brings points and normals of the moved cloth back to the rig", PassStage::kSurface,
           [settings = scene.camera.movement, key = random_key(scene)](PassTile& tile) {
             const ClothMovement m = movement_of_shot(settings, tile.take, key);
             for (std::size_t i = 0; i < tile.surface.size(); ++i) {

@@ -26,7 +26,7 @@ std::vector<Rgb> cropped(const std::vector<Rgb>& signal, Rect from, Rect to) {
 }  // namespace
 
 Pass vignetting_pass(const Scene& scene, const SceneRig& rig) {
-  return {"vignetting", "darkens the frame towards its corners", Stage::kShot,
+  return {"vignetting", "darkens the frame towards its corners", PassStage::kShot,
           [vignette = Vignette(scene.camera.vignette, rig.camera)](PassTile& tile) {
             for_each_pixel(tile.signal_rect, [&](std::size_t i, int x, int y) {
               const double gain = vignette.gain(x, y);
@@ -37,7 +37,7 @@ Pass vignetting_pass(const Scene& scene, const SceneRig& rig) {
 
 Pass defocus_pass(const Scene& scene, const Halos& halos) {
   return {
-      "defocus", "blurs by a disc and by the lens's point spread", Stage::kShot,
+      "defocus", "blurs by a disc and by the lens's point spread", PassStage::kShot,
       [kernel = blur_kernel(scene.camera.blur), halo = halos.bloom_rows + halos.chromatic](PassTile& tile) {
         const Rect sharp_rect = grown(tile.rect, halo + kernel.radius);
         const std::vector<Rgb> sharp = cropped(tile.signal, tile.signal_rect, sharp_rect);

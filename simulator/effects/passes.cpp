@@ -46,7 +46,7 @@ PassRunner::PassRunner(PassList list, TileOptions options)
   }
 }
 
-void PassRunner::run_stage(Stage stage, Worker& worker) const {
+void PassRunner::run_stage(PassStage stage, Worker& worker) const {
   for (std::size_t p = 0; p < list_.passes.size(); ++p) {
     if (list_.passes[p].stage != stage) continue;
     const steady_clock::time_point start = steady_clock::now();
@@ -60,11 +60,11 @@ void PassRunner::light(Worker& worker) const {
   PassTile& tile = worker.tile;
   const bool one_each = tile.shot <= list_.leds || list_.leds == 0;
   tile.led = one_each ? tile.shot : (tile.shot - 1) % list_.leds + 1;
-  if (list_.lit_together.empty()) return run_stage(Stage::kLight, worker);
+  if (list_.lit_together.empty()) return run_stage(PassStage::kLight, worker);
   worker.sum.assign(static_cast<std::size_t>(tile.area.pixels()), Rgb{});
   for (const int led : list_.lit_together) {
     tile.led = led;
-    run_stage(Stage::kLight, worker);
+    run_stage(PassStage::kLight, worker);
     for (std::size_t i = 0; i < worker.sum.size(); ++i) {
       for (std::size_t c = 0; c < 3; ++c) worker.sum[i][c] += tile.signal[i][c];
     }
@@ -83,14 +83,14 @@ Result<void> PassRunner::run(Rect area, std::span<const int> shots, std::stop_to
     if (tile.failure) return;
     tile.resize({area.x0 + part.x0, area.y0 + part.y0, area.x0 + part.x1, area.y0 + part.y1}, list_.halo);
     tile.shot = tile.led = 0;
-    if (!list_.cloth_moves) run_stage(Stage::kSurface, worker);
+    if (!list_.cloth_moves) run_stage(PassStage::kSurface, worker);
     with_surface(tile);
     for (const int shot : shots) {
       tile.shot = shot;
       tile.take = list_.takes_before + shot;
-      if (list_.cloth_moves) run_stage(Stage::kSurface, worker);
+      if (list_.cloth_moves) run_stage(PassStage::kSurface, worker);
       light(worker);
-      run_stage(Stage::kShot, worker);
+      run_stage(PassStage::kShot, worker);
       if (!tile.failure) with_shot(tile);
     }
   });

@@ -88,13 +88,13 @@ void for_each_pixel(Rect rect, const Body& body) {
 
 /// When a pass runs: once a tile, whatever the light; for each LED of each shot, to where its light leaves
 /// the cloth, which is then summed; once a shot.
-enum class Stage { kSurface, kLight, kShot };
+enum class PassStage { kSurface, kLight, kShot };
 
 /// One step of rendering.
 struct Pass {
   std::string name;
   std::string does;  ///< one sentence for `weft simulate --explain`
-  Stage stage = Stage::kSurface;
+  PassStage stage = PassStage::kSurface;
   std::function<void(PassTile&)> run;
   std::string effect = {};  ///< key of the effect that called for it; empty for what every scene needs
 };
@@ -108,7 +108,7 @@ struct LeftOutEffect {
 
 /// All steps of a frame, and what they need around it.
 struct PassList {
-  std::vector<Pass> passes;       ///< in the order they run and of Stage
+  std::vector<Pass> passes;       ///< in the order they run and of PassStage
   int halo = 0;                   ///< pixels around a tile that the passes need
   int leds = 0;                   ///< of the rig
   bool cloth_moves = false;       ///< the surface is another one for each shot
@@ -148,7 +148,7 @@ class PassRunner {
     std::vector<std::int64_t> pixels;
     std::vector<Rgb> sum;  ///< signal of the LEDs so far, where several are lit
   };
-  void run_stage(Stage stage, Worker& worker) const;
+  void run_stage(PassStage stage, Worker& worker) const;
   void light(Worker& worker) const;
 
   PassList list_;

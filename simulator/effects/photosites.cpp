@@ -8,7 +8,7 @@
 namespace weft::simulator {
 
 Pass mosaic_pass(int halo_rows) {
-  return {"mosaic", "keeps the colour that each photosite's filter passes", Stage::kShot,
+  return {"mosaic", "keeps the colour that each photosite's filter passes", PassStage::kShot,
           [halo_rows](PassTile& tile) {
             constexpr CfaPattern kCfa;
             tile.sample_rect = grown_in_rows(tile.rect, halo_rows);
@@ -26,7 +26,7 @@ Pass mosaic_pass(int halo_rows) {
 }
 
 Pass rgb_pass() {
-  return {"rgb", "keeps all three colours of each pixel", Stage::kShot, [](PassTile& tile) {
+  return {"rgb", "keeps all three colours of each pixel", PassStage::kShot, [](PassTile& tile) {
             tile.sample_rect = tile.rect;
             tile.samples.clear();
             for_each_pixel(tile.rect, [&](std::size_t, int x, int y) {
@@ -37,7 +37,7 @@ Pass rgb_pass() {
 }
 
 Pass noise_pass(const Scene& scene, const SceneRig& rig) {
-  return {"noise", "draws photons (Poisson) and read noise (normal)", Stage::kShot,
+  return {"noise", "draws photons (Poisson) and read noise (normal)", PassStage::kShot,
           [sensor = rig.sensor, key = random_key(scene)](PassTile& tile) {
             const std::size_t channels =
                 tile.samples.size() / static_cast<std::size_t>(tile.sample_rect.pixels());
@@ -54,7 +54,7 @@ Pass noise_pass(const Scene& scene, const SceneRig& rig) {
 }
 
 Pass converter_pass(const SceneRig& rig) {
-  return {"converter", "adds the black level, rounds to whole counts and clips at 0 and white", Stage::kShot,
+  return {"converter", "adds the black level, rounds to whole counts and clips at 0 and white", PassStage::kShot,
           [sensor = rig.sensor](PassTile& tile) {
             tile.counts.resize(tile.samples.size());
             for (std::size_t i = 0; i < tile.counts.size(); ++i)

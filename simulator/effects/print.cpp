@@ -6,7 +6,7 @@
 namespace weft::simulator {
 
 Pass print_pass(const Scene& scene) {
-  return {"print", "multiplies the albedo by the printed pattern", Stage::kSurface,
+  return {"print", "multiplies the albedo by the printed pattern", PassStage::kSurface,
           [print = Print(scene.material.print)](PassTile& tile) {
             for (std::size_t i = 0; i < tile.albedo.size(); ++i) {
               const auto ink = print.at(tile.point_mm[i].x, tile.point_mm[i].y);

@@ -75,7 +75,7 @@ Pass reflectance_pass(const Scene& scene, const SceneRig& rig) {
     };
   };
   return {"reflectance", "reflects light as the material does: highlights, sheen, rough diffuse",
-          Stage::kLight, std::visit(pass, scene.material.reflectance)};
+          PassStage::kLight, std::visit(pass, scene.material.reflectance)};
 }
 
 }  // namespace weft::simulator

@@ -41,7 +41,7 @@ std::vector<Rgb> signal_at_centre(const Scene& scene, const SceneRig& rig) {
 }  // namespace
 
 Pass led_drift_pass(const Scene& scene, const SceneRig& rig) {
-  return {"led drift", "fades the LEDs over the session and lets each shot flicker", Stage::kLight,
+  return {"led drift", "fades the LEDs over the session and lets each shot flicker", PassStage::kLight,
           [lights = scene.lights, leds = static_cast<int>(rig.leds.leds.size()),
            key = random_key(scene)](PassTile& tile) {
             if (tile.led == 0) return;
@@ -58,7 +58,7 @@ Pass stray_pass(const Scene& scene, const SceneRig& rig) {
     for (double& l : light) l *= scene.lights.stray;
     of_led.push_back(light);
   }
-  return {"stray", "adds light of the LED that comes back from the rig, evenly from all sides", Stage::kLight,
+  return {"stray", "adds light of the LED that comes back from the rig, evenly from all sides", PassStage::kLight,
           even_light(std::move(of_led))};
 }
 
@@ -68,7 +68,7 @@ Pass ambient_pass(const Scene& scene, const SceneRig& rig) {
     for (std::size_t c = 0; c < 3; ++c)
       brightest[c] = std::max(brightest[c], rig.room_share * scene.lights.ambient * light[c]);
   }
-  return {"ambient", "adds the light of the room to every shot, the dark one too", Stage::kShot,
+  return {"ambient", "adds the light of the room to every shot, the dark one too", PassStage::kShot,
           even_light(std::vector<Rgb>(rig.leds.leds.size() + 1, brightest))};
 }
 

@@ -40,7 +40,7 @@ ViewRay ray_of(const Lens& lens, int x, int y) {
 }  // namespace
 
 Pass targets_pass(const Scene& scene, const SceneRig& rig, bool seen_by_camera) {
-  return {"targets", "lays boards, charts and paper on the table", Stage::kSurface,
+  return {"targets", "lays boards, charts and paper on the table", PassStage::kSurface,
           [targets = inked_targets(scene, seen_by_camera), lens = *Lens::of(rig.camera)](PassTile& tile) {
             tile.target.assign(tile.surface.size(), kCloth);
             for_each_pixel(tile.area, [&](std::size_t i, int x, int y) {
@@ -73,7 +73,7 @@ Pass targets_pass(const Scene& scene, const SceneRig& rig, bool seen_by_camera) 
 Pass paper_pass(const Scene& scene) {
   std::vector<double> non_lambertian;
   for (const TargetSettings& target : scene.targets) non_lambertian.push_back(target.sheet.non_lambertian);
-  return {"paper", "lets paper depart from Lambert's law", Stage::kLight,
+  return {"paper", "lets paper depart from Lambert's law", PassStage::kLight,
           [non_lambertian = std::move(non_lambertian)](PassTile& tile) {
             for (std::size_t i = 0; i < tile.irradiance.size(); ++i) {
               if (tile.target[i] == kCloth) continue;

@@ -35,7 +35,7 @@ double share_at(const PassTile& tile, std::size_t i, const std::array<double, 2>
 
 Pass translucency_pass(const Scene& scene, const SceneRig& rig, const Halos& halos) {
   const auto [warp, weft] = scene.material.translucency.yarns();
-  return {"translucency", "lets light enter a yarn and leave beside it", Stage::kLight,
+  return {"translucency", "lets light enter a yarn and leave beside it", PassStage::kLight,
           [carriers = carriers_of(scene), shares = std::array{warp.share, weft.share},
            unit = rig.signal_of_unit(scene.camera.iso), halo = halos.of_signal()](PassTile& tile) {
             if (tile.led == 0 || tile.failure) return;

@@ -71,7 +71,7 @@ class Veils {
 }  // namespace
 
 Pass veil_pass(const Scene& scene, const SceneRig& rig, PassList light) {
-  return {"veil", "adds the light that the lens spreads over the whole frame", Stage::kShot,
+  return {"veil", "adds the light that the lens spreads over the whole frame", PassStage::kShot,
           [veils = std::make_shared<Veils>(scene.camera.veil, rig.camera.size, std::move(light))](
               PassTile& tile) {
             const Result<std::shared_ptr<const FrameLight>> veil = veils->of(tile);

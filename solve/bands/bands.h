@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "core/image/tiles.h"

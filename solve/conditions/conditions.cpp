@@ -6,10 +6,10 @@
 #include "solve/conditions/brackets.h"
 #include "solve/conditions/drift.h"
 #include "solve/conditions/led_gains.h"
-#include "solve/conditions/photosites.h"
-#include "solve/conditions/pose.h"
+#include "solve/conditions/bad_photosites.h"
+#include "solve/conditions/tilted_cloth.h"
 #include "solve/conditions/useless_lights.h"
-#include "solve/conditions/veil.h"
+#include "solve/conditions/lens_glare.h"
 
 namespace weft::pipeline {
 namespace {

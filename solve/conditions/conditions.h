@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/image/raw_frame.h"
 #include "core/rig/photosites.h"

@@ -23,7 +23,7 @@ namespace {
 constexpr const char *kFromPatches = "patches", *kFromRepeats = "repeat";
 
 // Light of a repeat over that of the photograph of the same light.
-std::optional<double> ratio_of(const Repeat& repeat, const Photographs& photographs, const Frames& again,
+std::optional<double> ratio_of(const RepeatedLight& repeat, const Photographs& photographs, const Frames& again,
                                int threads) {
   const Size size = photographs.size;
   constexpr int kBlock = solver::kLightBlock;
@@ -47,7 +47,7 @@ std::optional<double> ratio_of(const Repeat& repeat, const Photographs& photogra
 
 void ask_repeats(const Photographs& photographs, const DriftEvidence& evidence, int threads, Drift& drift) {
   std::vector<solver::LightRepeat> used;
-  for (const Repeat& repeat : evidence.repeats) {
+  for (const RepeatedLight& repeat : evidence.repeats) {
     const auto ratio = drift.ratios.emplace_back(ratio_of(repeat, photographs, evidence.again, threads));
     if (ratio && is_drift(*ratio)) used.push_back({repeat.earlier_time, repeat.later_time, *ratio});
   }

@@ -17,7 +17,7 @@
 namespace weft::pipeline {
 
 /// A light that was lit once more. Times are in any unit.
-struct Repeat {
+struct RepeatedLight {
   std::size_t light = 0;  ///< of the photographs, from 0
   std::size_t frame = 0;  ///< of DriftEvidence::again
   double earlier_time = 0;
@@ -27,7 +27,7 @@ struct Repeat {
 struct DriftEvidence {
   std::vector<WhitePatch> patches = {};
   Frames again = {};  ///< the repeats' frames
-  std::vector<Repeat> repeats = {};
+  std::vector<RepeatedLight> repeats = {};
   std::vector<double> times = {};  ///< of each photograph
   double first_time = 0;           ///< when the session began: all lights are as calibrated
 };

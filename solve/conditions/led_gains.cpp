@@ -9,7 +9,7 @@
 
 #include "core/base/statistics.h"
 #include "solve/conditions/drift.h"
-#include "solve/correction/left_out.h"
+#include "solve/correction/leave_out_lights.h"
 #include "solve/photographs/tile_reader.h"
 #include "solver/in_double/pixel.h"
 #include "solver/in_double/pixelwise.h"

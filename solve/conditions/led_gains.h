@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "solve/conditions/conditions.h"
 #include "solve/photographs/photographs.h"

@@ -9,7 +9,7 @@
 
 #include "core/base/statistics.h"
 #include "core/image/tiles.h"
-#include "solve/correction/left_out.h"
+#include "solve/correction/leave_out_lights.h"
 
 namespace weft::pipeline {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/image/image.h"
 #include "solve/correction/light_correction.h"

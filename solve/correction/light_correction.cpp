@@ -8,7 +8,7 @@
 #include <mutex>
 #include <optional>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/parallel.h"
 #include "solve/photographs/picture_axes.h"
 #include "solver/transport/marched_shadows.h"

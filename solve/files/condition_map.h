@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/image/compression.h"
 #include "solve/photographs/photographs.h"

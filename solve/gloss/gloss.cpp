@@ -9,7 +9,7 @@
 
 #include "core/base/statistics.h"
 #include "core/rig/color_transform.h"
-#include "solve/correction/left_out.h"
+#include "solve/correction/leave_out_lights.h"
 #include "solve/correction/light_correction.h"
 #include "solve/gloss/sample_gloss.h"
 #include "solver/reflectance/glossy_method.h"

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "solve/photographs/photographs.h"
 #include "solve/photographs/solve_plan.h"

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/image/tiles.h"
 #include "solve/bands/bands.h"

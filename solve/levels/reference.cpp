@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/vec.h"
-#include "solve/correction/left_out.h"
+#include "solve/correction/leave_out_lights.h"
 #include "solve/correction/light_choice.h"
 #include "solve/levels/stages.h"
 #include "solve/photographs/picture_axes.h"

@@ -113,8 +113,8 @@ Result<SessionShifts> register_shots(const Photographs& photographs, const JobCo
   return result;
 }
 
-Result<FarShifts> find_far_shifts(const Photographs& photographs, const JobContext& context) {
-  FarShifts result;
+Result<MovedShots> find_far_shifts(const Photographs& photographs, const JobContext& context) {
+  MovedShots result;
   if (photographs.count() > kMostFarShots) return result;
   const int longest = std::max(photographs.size.width, photographs.size.height);
   for (const int wanted : kFarParts) {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "solve/photographs/photographs.h"
 #include "solver/registration/registration.h"
@@ -42,7 +42,7 @@ inline constexpr std::size_t kLeastStillShots = 4;
 Result<SessionShifts> register_shots(const Photographs& photographs, const JobContext& context);
 
 /// Shifts beyond those that are registered.
-struct FarShifts {
+struct MovedShots {
   std::vector<std::size_t> moved;  ///< lights whose shots show the cloth elsewhere; empty: nothing was found
   double most_px = 0;              ///< the largest shift, in pixels of the frame
   double explained = 0;            ///< solver::FarShifts::explained
@@ -53,6 +53,6 @@ struct FarShifts {
 /// the frame: 512 pixels a side, then 2048 and coarser. Memory: a copy of that part, which is smaller where
 /// photographs are developed, so that it has at most 512 MB. None is looked for in more than 64 photographs.
 /// Errors: kInterrupted, and those of cut().
-Result<FarShifts> find_far_shifts(const Photographs& photographs, const JobContext& context);
+Result<MovedShots> find_far_shifts(const Photographs& photographs, const JobContext& context);
 
 }  // namespace weft::pipeline

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/image/tiles.h"
 #include "solve/bands/bands.h"

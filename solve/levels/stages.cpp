@@ -7,7 +7,7 @@
 
 #include "solve/bands/deblur.h"
 #include "solve/bands/realign.h"
-#include "solve/correction/left_out.h"
+#include "solve/correction/leave_out_lights.h"
 #include "solve/gloss/gloss.h"
 
 namespace weft::pipeline {

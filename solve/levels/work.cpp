@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/levels/work.h"
 
-#include "solve/correction/left_out.h"
+#include "solve/correction/leave_out_lights.h"
 #include "solve/correction/light_choice.h"
 #include "solver/left_out/blocks.h"
 #include "solver/sample_tiles.h"

@@ -8,7 +8,7 @@ namespace weft::pipeline {
 /// Wall seconds of a solve, by what they grow with.
 struct SolveWork {
   double frame = 0;     ///< with the pixels of the frame
-  double few_rows = 0;  ///< with the patches of few rows of blocks (solve/correction/left_out.h)
+  double few_rows = 0;  ///< with the patches of few rows of blocks (solve/correction/leave_out_lights.h)
   double choice = 0;    ///< with the patches of choose_light()
   double samples = 0;   ///< with the pixels of the sample tiles
   double lobe = 0;      ///< with nothing: a lobe is sought in kGlossPixels pixels

@@ -89,7 +89,7 @@ struct PhotographsSummary {
   double outshining = 0;                          ///< share of pixels, solver/diagnosis/highlights.h
   std::vector<std::string> warnings;              ///< a sentence each, said when the photographs were read
   pipeline::SessionShifts shifts;                 ///< of the photographs as they were read
-  std::optional<pipeline::FarShifts> far_shifts;  ///< where they were looked for
+  std::optional<pipeline::MovedShots> far_shifts;  ///< where they were looked for
   bool shadow_reach_is_capped = false;
   /// What a session adds: its folder's name, the shot of each LED, and the shots that a person left out.
   std::string session;

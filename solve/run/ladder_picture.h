@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "solve/input/session_input.h"
 #include "solve/run/solve_session.h"

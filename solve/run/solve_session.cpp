@@ -337,7 +337,7 @@ class Run {
     summary.shifts = prepared.shifts;
     // Where shots could not be registered and readings do not fit, the cloth may have moved by far.
     if (may_have_moved_far(summary)) {
-      Result<pipeline::FarShifts> far = find_far_shifts(prepared.photographs, context_);
+      Result<pipeline::MovedShots> far = find_far_shifts(prepared.photographs, context_);
       if (!far) return std::move(far).error();
       summary.far_shifts = std::move(*far);
     }

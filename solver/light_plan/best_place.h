@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "solver/light_plan/light_plan.h"
 

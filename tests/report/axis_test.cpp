@@ -12,15 +12,15 @@ namespace weft::report {
 namespace {
 
 std::vector<double> ticks(double low, double high, bool log) {
-  return Axis{.low = low, .high = high, .log = log}.ticks();
+  return PlotAxis{.low = low, .high = high, .log = log}.ticks();
 }
 
 auto are(const std::vector<double>& values) {
   return testing::Pointwise(testing::DoubleNear(1e-12), values);
 }
 
-TEST(Axis, PutsItsEndsWhereItIsToldAndTheMiddleBetween) {
-  const Axis linear = {.low = 2, .high = 6, .from = 100, .to = 20},
+TEST(PlotAxis, PutsItsEndsWhereItIsToldAndTheMiddleBetween) {
+  const PlotAxis linear = {.low = 2, .high = 6, .from = 100, .to = 20},
              log = {.low = 0.1, .high = 1000, .from = 0, .to = 400, .log = true};
   EXPECT_DOUBLE_EQ(linear.at(2), 100);
   EXPECT_DOUBLE_EQ(linear.at(6), 20);
@@ -30,21 +30,21 @@ TEST(Axis, PutsItsEndsWhereItIsToldAndTheMiddleBetween) {
   EXPECT_DOUBLE_EQ(log.at(10), 200) << "the geometric mean is drawn in the middle";
 }
 
-TEST(Axis, LeavesSixPercentAroundTheValues) {
-  const Axis linear = Axis::around(std::vector<double>{30, -20, 80}, false, 0, 112);
+TEST(PlotAxis, LeavesSixPercentAroundTheValues) {
+  const PlotAxis linear = PlotAxis::around(std::vector<double>{30, -20, 80}, false, 0, 112);
   EXPECT_DOUBLE_EQ(linear.low, -26);
   EXPECT_DOUBLE_EQ(linear.high, 86);
   EXPECT_NEAR(linear.at(-20), 6, 1e-12);
-  const Axis log = Axis::around(std::vector<double>{1e4, 1}, true, 0, 112);
+  const PlotAxis log = PlotAxis::around(std::vector<double>{1e4, 1}, true, 0, 112);
   EXPECT_NEAR(std::log10(log.low), -0.24, 1e-12);
   EXPECT_NEAR(std::log10(log.high), 4.24, 1e-12);
 }
 
-TEST(Axis, TakesOnlyWhatItCanShow) {
+TEST(PlotAxis, TakesOnlyWhatItCanShow) {
   constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const std::vector<double> values = {kNoNumber, -5, 0, 1, 100, kInfinite};
-  const Axis linear = Axis::around(values, false, 0, 1), log = Axis::around(values, true, 0, 1);
+  const PlotAxis linear = PlotAxis::around(values, false, 0, 1), log = PlotAxis::around(values, true, 0, 1);
   EXPECT_LT(linear.low, -5);
   EXPECT_GT(linear.high, 100);
   EXPECT_LT(linear.high, 110);
@@ -55,10 +55,10 @@ TEST(Axis, TakesOnlyWhatItCanShow) {
   EXPECT_FALSE(log.takes(kInfinite));
 }
 
-TEST(Axis, OfNothingOrOfOneValueHasALength) {
+TEST(PlotAxis, OfNothingOrOfOneValueHasALength) {
   for (const std::vector<double>& values : std::vector<std::vector<double>>{{}, {7}, {0}, {-3, -3}}) {
     for (const bool log : {false, true}) {
-      const Axis axis = Axis::around(values, log, 0, 1);
+      const PlotAxis axis = PlotAxis::around(values, log, 0, 1);
       EXPECT_LT(axis.low, axis.high) << values.size() << " values, logarithmic: " << log;
       EXPECT_FALSE(axis.ticks().empty()) << axis.low << " to " << axis.high << ", logarithmic: " << log;
     }

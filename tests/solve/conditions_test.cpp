@@ -12,7 +12,7 @@
 #include "solve/conditions/brackets.h"
 #include "solve/conditions/conditions.h"
 #include "solve/conditions/drift.h"
-#include "solve/conditions/photosites.h"
+#include "solve/conditions/bad_photosites.h"
 #include "solve/conditions/useless_lights.h"
 #include "tests/solve/cloth.h"
 

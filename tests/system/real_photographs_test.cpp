@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/image_io/image_io.h"
-#include "solve/correction/left_out.h"
+#include "solve/correction/leave_out_lights.h"
 #include "solve/input/load.h"
 #include "solve/input/photo_input.h"
 #include "tests/system/samples.h"

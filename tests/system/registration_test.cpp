@@ -38,8 +38,8 @@ class Registration : public testing::Test {
     options.folder = work_ / name;
     return *app::load_photographs(*app::plan_session(options), {});
   }
-  static pipeline::FarShifts need_far(const pipeline::Photographs& photographs) {
-    Result<pipeline::FarShifts> far = pipeline::find_far_shifts(photographs, {});
+  static pipeline::MovedShots need_far(const pipeline::Photographs& photographs) {
+    Result<pipeline::MovedShots> far = pipeline::find_far_shifts(photographs, {});
     if (!far) throw std::runtime_error(far.error().message());
     return *std::move(far);
   }
@@ -139,14 +139,14 @@ TEST_F(Registration, FindsAPushByManyPixelsAndNoneInGloss) {
     pipeline::Photographs other = photographs_of(pushed, (name + std::string("_pushed.weft")).c_str());
     EXPECT_TRUE(need_far(session).moved.empty()) << name;
     std::swap(session.mosaics()->frames[4], other.mosaics()->frames[4]);
-    const pipeline::FarShifts far = need_far(session);
+    const pipeline::MovedShots far = need_far(session);
     EXPECT_EQ(far.moved, std::vector<std::size_t>{4}) << name << ": explained " << far.explained;
     EXPECT_LE(far.most_px, far.reach_px * std::sqrt(2.0)) << name;
   }
   for (const char* name : {"satin_sheen", "velvet"}) {
     simulator::Scene glossy = scene_named(name, kClothSize);
     glossy.effects.finite_led = glossy.effects.cast_shadows = glossy.effects.interreflection = false;
-    const pipeline::FarShifts far = need_far(photographs_of(glossy, name));
+    const pipeline::MovedShots far = need_far(photographs_of(glossy, name));
     EXPECT_TRUE(far.moved.empty()) << name << ": " << far.most_px << " px, explained " << far.explained;
   }
 }

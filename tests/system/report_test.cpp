@@ -316,7 +316,7 @@ app::PhotographsSummary unregistered_summary(double residual) {
   app::PhotographsSummary summary = moved_summary(1.1);
   summary.shifts.found = false;
   summary.diagnosis.residual = residual;
-  summary.far_shifts = pipeline::FarShifts{{}, 0, 0, 128};
+  summary.far_shifts = pipeline::MovedShots{{}, 0, 0, 128};
   return summary;
 }
 
@@ -343,7 +343,7 @@ TEST(Verdicts, NameNoCauseOfReadingsThatDoNotFitUnlessOneWasFound) {
 
 TEST(Verdicts, SayThatTheClothMovedWhereAFarShiftExplainsIt) {
   app::PhotographsSummary summary = unregistered_summary(0.09);
-  summary.far_shifts = pipeline::FarShifts{{6, 7, 8, 9}, 23.4, 0.84, 128};
+  summary.far_shifts = pipeline::MovedShots{{6, 7, 8, 9}, 23.4, 0.84, 128};
   const std::vector<Verdict> verdicts = app::verdicts_of(summary, 0, {}, solver::Level::kStandard);
   ASSERT_EQ(verdicts.size(), 1U);
   EXPECT_EQ(verdicts[0].name, "CLOTH_MOVED");

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "virtual_rig/light/exposure.h"
+#include "virtual_rig/light/exposed_frame.h"
 
 namespace weft::virtual_rig {
 

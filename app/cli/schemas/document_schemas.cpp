@@ -55,7 +55,7 @@ const std::vector<DocumentSchema>& document_schemas() {
       {"weft.batch", "The first line of a plan", fields_of<batch::Header>},
       {"weft.batch-session", "A line of a plan: a session that is solved", fields_of<batch::PlannedSolve>,
        false},
-      {"weft.batch-left-out", "A line of a plan: a session that is not", fields_of<batch::LeftOut>, false},
+      {"weft.batch-left-out", "A line of a plan: a session that is not", fields_of<batch::SkippedSession>, false},
       {"weft.batch-result", "A line of RESULTS/task-N.jsonl: what became of a session",
        fields_of<batch::Outcome>},
       {"weft.batch-report", "report.json of a batch", fields_of<BatchReportFacts>}};

@@ -20,7 +20,7 @@
 #include <string_view>
 #include <utility>
 
-#include "app/server/http/conditions.h"
+#include "app/server/http/request_headers.h"
 #include "app/server/http/error_reply.h"
 #include "app/server/http/path_pattern.h"
 #include "core/base/files.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/server/http/conditions.h"
+#include "app/server/http/request_headers.h"
 #include "core/base/descriptor.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"

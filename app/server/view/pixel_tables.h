@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/solve/solve.h"

@@ -70,7 +70,7 @@ std::string channel_table() {
   std::string table = "| channel | holds | range | from |\n|---|---|---|---|\n";
   for (const Channel& channel : channel_catalogue()) {
     std::string from;
-    for (const Plane plane : channel.planes) {
+    for (const MapPlane plane : channel.planes) {
       const std::string map = kind_of(plane).map;
       if (from.find(map) == std::string::npos) from += (from.empty() ? "" : ", ") + map;
     }

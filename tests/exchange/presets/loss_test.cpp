@@ -61,7 +61,7 @@ TEST(Loss, OfASlopeOf89DegreesIsThatOfItsDirection) {
 
 TEST(Loss, OfAlbedoIsInReflectanceAndInDecibelsOfItsSamples) {
   TestMaps maps({16, 16});
-  for (const Plane plane : {Plane::kAlbedoR, Plane::kAlbedoG, Plane::kAlbedoB})
+  for (const MapPlane plane : {MapPlane::kAlbedoR, MapPlane::kAlbedoG, MapPlane::kAlbedoB})
     maps.set(plane, [](int x, int y) { return 0.003 * (x + 16 * y); });
   const PresetFile file = file_of(kLostAlbedo, {.color = ColorSpace::kSrgb});
   Image<float> samples = maps.samples(file);
@@ -76,7 +76,7 @@ TEST(Loss, OfAlbedoIsInReflectanceAndInDecibelsOfItsSamples) {
 
 TEST(Loss, OfFloatsIsNothingAndHasNoDecibels) {
   TestMaps maps({4, 4});
-  for (const Plane plane : {Plane::kAlbedoR, Plane::kAlbedoG, Plane::kAlbedoB}) maps.set(plane, 0.3);
+  for (const MapPlane plane : {MapPlane::kAlbedoR, MapPlane::kAlbedoG, MapPlane::kAlbedoB}) maps.set(plane, 0.3);
   const PresetFile file = file_of(kLostAlbedo, {.encoding = Encoding::kExr, .bits = 32});
   const Loss loss = measure_loss(file, maps.planes(), {}, maps.samples(file));
   EXPECT_EQ(loss.albedo->mean_abs, 0);
@@ -86,9 +86,9 @@ TEST(Loss, OfFloatsIsNothingAndHasNoDecibels) {
 
 TEST(Loss, CountsPixelsThatAnIntegerCannotHold) {
   TestMaps maps({4, 1});
-  maps.set(Plane::kAlbedoR, [](int x, int) { return -0.1 + 0.5 * x; });  // -0.1, 0.4, 0.9, 1.4
-  maps.set(Plane::kAlbedoG, 0.5);
-  maps.set(Plane::kAlbedoB, 0.5);
+  maps.set(MapPlane::kAlbedoR, [](int x, int) { return -0.1 + 0.5 * x; });  // -0.1, 0.4, 0.9, 1.4
+  maps.set(MapPlane::kAlbedoG, 0.5);
+  maps.set(MapPlane::kAlbedoB, 0.5);
   const Loss loss = loss_at(maps, file_of(kLostAlbedo, {.color = ColorSpace::kSrgb}));
   EXPECT_EQ(loss.channels[0].cut, 2);
   EXPECT_EQ(loss.channels[1].cut, 0);
@@ -97,7 +97,7 @@ TEST(Loss, CountsPixelsThatAnIntegerCannotHold) {
 
 TEST(Loss, OfHalfEndsAtItsLargestNumberAndSaysSo) {
   TestMaps maps({3, 1});
-  maps.set(Plane::kHeight, [](int x, int) { return x == 0 ? 1.0 : x == 1 ? 65504.0 : 1e6; });
+  maps.set(MapPlane::kHeight, [](int x, int) { return x == 0 ? 1.0 : x == 1 ? 65504.0 : 1e6; });
   const PresetFile file = file_of({"height"}, {.encoding = Encoding::kExr, .bits = 16});
   Image<float> read = maps.samples(file);
   read(2, 0) = 65504;

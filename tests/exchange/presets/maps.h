@@ -15,14 +15,14 @@ class TestMaps {
  public:
   explicit TestMaps(Size size) : size_(size) {}
 
-  void set(Plane plane, const std::function<double(int, int)>& value) {
+  void set(MapPlane plane, const std::function<double(int, int)>& value) {
     Image<float>& image = images_[static_cast<std::size_t>(plane)] = Image<float>(size_);
     for (int y = 0; y < size_.height; ++y) {
       for (int x = 0; x < size_.width; ++x) image(x, y) = static_cast<float>(value(x, y));
     }
     planes_[static_cast<std::size_t>(plane)] = {.pixels = image.plane()};
   }
-  void set(Plane plane, double value) { planes_[static_cast<std::size_t>(plane)] = {.constant = value}; }
+  void set(MapPlane plane, double value) { planes_[static_cast<std::size_t>(plane)] = {.constant = value}; }
 
   /// Unit normals of slopes that are functions of the pixel: (-x, -y, 1).
   void set_slopes(const std::function<std::array<double, 2>(int, int)>& slope) {
@@ -33,9 +33,9 @@ class TestMaps {
         return c == 0 ? -sx * z : c == 1 ? -sy * z : z;
       };
     };
-    set(Plane::kNormalX, part(0));
-    set(Plane::kNormalY, part(1));
-    set(Plane::kNormalZ, part(2));
+    set(MapPlane::kNormalX, part(0));
+    set(MapPlane::kNormalY, part(1));
+    set(MapPlane::kNormalZ, part(2));
   }
 
   const SourcePlanes& planes() const { return planes_; }

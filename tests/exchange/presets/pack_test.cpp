@@ -38,9 +38,9 @@ TEST(Packing, TurnsTheSecondPartOfANormalForDirectX) {
 
 TEST(Packing, PutsColourThroughTheTransferFunctionOfSrgbAndDataNot) {
   TestMaps maps({3, 1});
-  for (const Plane plane : {Plane::kAlbedoR, Plane::kAlbedoG, Plane::kAlbedoB})
+  for (const MapPlane plane : {MapPlane::kAlbedoR, MapPlane::kAlbedoG, MapPlane::kAlbedoB})
     maps.set(plane, [](int x, int) { return 0.002 + 0.3 * x; });
-  maps.set(Plane::kOpacity, 0.25);
+  maps.set(MapPlane::kOpacity, 0.25);
   const Image<float> samples =
       maps.samples(file_of({"albedo.r", "albedo.g", "albedo.b", "opacity"}, {.color = ColorSpace::kSrgb}));
   for (int x = 0; x < 3; ++x) {
@@ -52,8 +52,8 @@ TEST(Packing, PutsColourThroughTheTransferFunctionOfSrgbAndDataNot) {
 
 TEST(Packing, GivesBackItsValuesFromItsSamples) {
   TestMaps maps({8, 8});
-  maps.set(Plane::kHeight, [](int x, int y) { return -0.3 + 0.05 * x + 0.03 * y; });
-  for (const Plane plane : {Plane::kAlbedoR, Plane::kAlbedoG, Plane::kAlbedoB})
+  maps.set(MapPlane::kHeight, [](int x, int y) { return -0.3 + 0.05 * x + 0.03 * y; });
+  for (const MapPlane plane : {MapPlane::kAlbedoR, MapPlane::kAlbedoG, MapPlane::kAlbedoB})
     maps.set(plane, [](int x, int y) { return 0.01 * (x + 8 * y); });
   maps.set_slopes([](int x, int y) { return std::array<double, 2>{0.2 * x - 0.7, 0.1 * y}; });
   ChannelFacts facts;
@@ -79,7 +79,7 @@ TEST(Packing, GivesBackItsValuesFromItsSamples) {
 
 TEST(Packing, HeightOfAPlainClothIsHalfAndNoDivisionByNothing) {
   TestMaps maps({2, 2});
-  maps.set(Plane::kHeight, [](int, int) { return 0.7; });
+  maps.set(MapPlane::kHeight, [](int, int) { return 0.7; });
   ChannelFacts facts;
   facts.height_least_mm = facts.height_most_mm = 0.7;
   Image<float> samples = maps.samples(file_of({"height"}), facts);
@@ -90,7 +90,7 @@ TEST(Packing, HeightOfAPlainClothIsHalfAndNoDivisionByNothing) {
 
 TEST(Packing, AsksForMapsThatAreNotThere) {
   TestMaps maps({2, 2});
-  maps.set(Plane::kAlbedoR, 0.5);
+  maps.set(MapPlane::kAlbedoR, 0.5);
   const Result<void> lacks = check_file(file_of({"occlusion", "metallic"}), maps.planes(), "orm");
   ASSERT_FALSE(lacks);
   EXPECT_THAT(lacks.error().message(), testing::HasSubstr("preset orm: {name}.png"));
@@ -102,15 +102,15 @@ TEST(Packing, AsksForMapsThatAreNotThere) {
 TEST(Packing, SaysNothingOfAClothWithoutHolesMetalAndDirection) {
   TestMaps maps({2, 2});
   EXPECT_FALSE(says_something(file_of({"opacity"}), maps.planes()));
-  maps.set(Plane::kOpacity, 1.0);
-  maps.set(Plane::kMetallic, 0.0);
+  maps.set(MapPlane::kOpacity, 1.0);
+  maps.set(MapPlane::kMetallic, 0.0);
   EXPECT_FALSE(says_something(file_of({"opacity", "metallic", "one"}), maps.planes()));
-  maps.set(Plane::kAlpha, 0.2);
-  maps.set(Plane::kAlphaAlong, 0.2);
-  maps.set(Plane::kYarnDeg, 0.0);
+  maps.set(MapPlane::kAlpha, 0.2);
+  maps.set(MapPlane::kAlphaAlong, 0.2);
+  maps.set(MapPlane::kYarnDeg, 0.0);
   const PresetFile axis = file_of({"anisotropy.x", "anisotropy.y", "anisotropy"});
   EXPECT_FALSE(says_something(axis, maps.planes()));
-  maps.set(Plane::kAlphaAlong, 0.1);
+  maps.set(MapPlane::kAlphaAlong, 0.1);
   EXPECT_TRUE(says_something(axis, maps.planes()));
   EXPECT_TRUE(says_something(file_of({"roughness"}), maps.planes())) << "a typed roughness is one";
 }

@@ -328,7 +328,7 @@ std::optional<Picture> picture_of(const Scene& scene) {
   const auto keep = [](std::vector<double>& all) {
     return [&all](const PassTile& tile) { all.insert(all.end(), tile.samples.begin(), tile.samples.end()); };
   };
-  passes.insert(after_noise, {"keep", "keeps samples", Stage::kShot, keep(picture.before_noise)});
+  passes.insert(after_noise, {"keep", "keeps samples", PassStage::kShot, keep(picture.before_noise)});
   const std::vector<int> shots = {1, 2, 0};
   PassRunner runner(std::move(*list), {512, 512, 1});
   const Result<void> ran = runner.run(

@@ -97,7 +97,7 @@ Json curve_of(const batch::Header& header) {
 Json reasons_of(const batch::Plan& plan) {
   std::array<int, batch::kReasonNames.size()> counts = {};
   std::array<double, batch::kReasonNames.size()> seconds = {};
-  for (const batch::LeftOut& left : plan.left_out) {
+  for (const batch::SkippedSession& left : plan.left_out) {
     ++counts.at(static_cast<std::size_t>(left.reason));
     seconds.at(static_cast<std::size_t>(left.reason)) += left.seconds;
   }
@@ -114,7 +114,7 @@ Json reasons_of(const batch::Plan& plan) {
 Json left_out_of(const batch::Plan& plan) {
   Json list = Json::array();
   for (const bool is_unsolvable : {true, false}) {
-    for (const batch::LeftOut& left : plan.left_out) {
+    for (const batch::SkippedSession& left : plan.left_out) {
       if ((left.reason == batch::Reason::kUnsolvable) != is_unsolvable || list.size() == kMostListed)
         continue;
       list.push_back({{"session", name_of_session(left.session)},

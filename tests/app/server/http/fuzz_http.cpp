@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "app/server/api/bodies/scan_body.h"
-#include "app/server/http/conditions.h"
+#include "app/server/http/request_headers.h"
 #include "app/server/http/cookies.h"
 #include "app/server/http/error_reply.h"
 #include "app/server/http/request_frame.h"

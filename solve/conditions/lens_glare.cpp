@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solve/conditions/veil.h"
+#include "solve/conditions/lens_glare.h"
 
 namespace weft::pipeline {
 

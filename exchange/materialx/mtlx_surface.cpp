@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exchange/materialx/surface.h"
+#include "exchange/materialx/mtlx_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,7 +68,7 @@ void MtlxSurface::put(const char* open_pbr, const char* standard, const char* gl
   inputs_.push_back({name, value});
 }
 
-MtlxValue MtlxSurface::value_of(const char* name, const Parameter& parameter) {
+MtlxValue MtlxSurface::value_of(const char* name, const TexturedParameter& parameter) {
   return parameter.texture ? graph_.scalar(name, *parameter.texture) : mtlx_float(parameter.constant[0]);
 }
 
@@ -85,7 +85,7 @@ void MtlxSurface::prepare() {
 }
 
 void MtlxSurface::put_base() {
-  const Parameter& color = material_.base_color;
+  const TexturedParameter& color = material_.base_color;
   MtlxValue value = mtlx_color(color.constant);
   if (color.texture) {
     value = graph_.color_texels("base_color", *color.texture);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "virtual_rig/light/exposure.h"
+#include "virtual_rig/light/exposed_frame.h"
 
 #include <algorithm>
 #include <chrono>

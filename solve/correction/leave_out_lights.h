@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "solve/photographs/photographs.h"
 #include "solver/left_out/left_out.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 
 #include <mutex>
 #include <optional>

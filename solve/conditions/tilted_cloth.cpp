@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solve/conditions/pose.h"
+#include "solve/conditions/tilted_cloth.h"
 
 #include <utility>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solve/conditions/photosites.h"
+#include "solve/conditions/bad_photosites.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "material/run/price.h"
+#include "material/run/maps_price.h"
 
 #include <fmt/format.h>
 

@@ -28,7 +28,7 @@ class MtlxSurface {
   };
 
   void put(const char* open_pbr, const char* standard, const char* gltf, const MtlxValue& value);
-  MtlxValue value_of(const char* name, const Parameter& parameter);
+  MtlxValue value_of(const char* name, const TexturedParameter& parameter);
   void put_base();
   void put_lobe();
   void put_reflectance();

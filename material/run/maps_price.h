@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/job.h"
+#include "core/base/job_context.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "material/run/maps.h"

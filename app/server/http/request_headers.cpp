@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/server/http/conditions.h"
+#include "app/server/http/request_headers.h"
 
 #include <algorithm>
 #include <charconv>

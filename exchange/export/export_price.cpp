@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exchange/export/price.h"
+#include "exchange/export/export_price.h"
 
 #include <fmt/format.h>
 
@@ -144,8 +144,8 @@ std::vector<PresetFile> everything() {
 }
 
 // All planes that the presets and the comparison need.
-std::set<exchange::Plane> needed(const std::vector<FilledPreset>& presets) {
-  std::set<exchange::Plane> planes;
+std::set<exchange::MapPlane> needed(const std::vector<FilledPreset>& presets) {
+  std::set<exchange::MapPlane> planes;
   const auto add = [&](const PresetFile& file) {
     for (const std::string& name : file.channels) {
       const auto& of = exchange::channel_named(name)->planes;
@@ -187,7 +187,7 @@ Result<void> choose_bits(PreparedExport& prepared, const JobContext& context) {
   if (!prepared.options.to_deg) return {};
   const MapFolder& folder = prepared.folder;
   MapPlanes maps(folder, folder.size, context.threads);
-  if (Result<void> ok = maps.load({exchange::Plane::kNormalX}); !ok) return ok;
+  if (Result<void> ok = maps.load({exchange::MapPlane::kNormalX}); !ok) return ok;
   const Piece piece = piece_of(maps, folder);
   Trials trials(piece);
   for (FilledPreset& preset : prepared.presets) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solve/correction/left_out.h"
+#include "solve/correction/leave_out_lights.h"
 
 #include <algorithm>
 #include <cmath>
