@@ -18,7 +18,8 @@ Result<ShownPlane> plane_of(const TexturedMaterial& material, std::array<int, 2>
                  "make it a tile first (weft finish), or ask for one"};
   }
   if (material.size_mm) {
-    return ShownPlane{{(*material.size_mm)[0] / 1000 * tiles[0], (*material.size_mm)[1] / 1000 * tiles[1]}, tiles};
+    return ShownPlane{{(*material.size_mm)[0] / 1000 * tiles[0], (*material.size_mm)[1] / 1000 * tiles[1]},
+                      tiles};
   }
   const Size pixels = material.base_color.texture ? material.base_color.texture->size : Size{1, 1};
   const double proportion = static_cast<double>(pixels.height) / pixels.width;

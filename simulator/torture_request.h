@@ -5,7 +5,7 @@
 
 #include "core/describe/described_fields.h"
 
-namespace weft::app {
+namespace weft::simulator {
 
 /// What `weft torture` and its job are told.
 struct TortureRequest {
@@ -16,4 +16,4 @@ inline void describe(Fields& fields, TortureRequest& request) {
   describe_output(fields, request.session, "Session folder, NAME.weft, which may be there already");
 }
 
-}  // namespace weft::app
+}  // namespace weft::simulator

@@ -37,7 +37,7 @@ namespace weft::app {
 namespace {
 
 struct PlanArguments {
-  PlanBatchOptions options;
+  library::PlanBatchOptions options;
   std::string find;
   std::filesystem::path list;
   LibraryPlace place;
@@ -66,14 +66,15 @@ Result<void> add_found(const PlanArguments& a, const CommonArguments& common,
   return {};
 }
 
-Result<void> add_sessions(const PlanArguments& a, const CommonArguments& common, PlanBatchOptions& options) {
+Result<void> add_sessions(const PlanArguments& a, const CommonArguments& common,
+                          library::PlanBatchOptions& options) {
   options.sessions.clear();
   for (const std::string& each : a.options.sessions) {
     if (each != "-") {
       options.sessions.push_back(each);
       continue;
     }
-    for (std::string& read : batch::sessions_of_text(on_standard_input()))
+    for (std::string& read : library::sessions_of_text(on_standard_input()))
       options.sessions.push_back(std::move(read));
     if (options.sessions.empty())
       return Error{ErrorKind::kNoInput, "there is nothing to plan", "standard input", "it names no session",
@@ -82,7 +83,7 @@ Result<void> add_sessions(const PlanArguments& a, const CommonArguments& common,
   if (!a.list.empty()) {
     const Result<std::string> text = read_text(a.list);
     if (!text) return text.error();
-    for (std::string& read : batch::sessions_of_text(*text)) options.sessions.push_back(std::move(read));
+    for (std::string& read : library::sessions_of_text(*text)) options.sessions.push_back(std::move(read));
     if (options.sessions.empty())
       return Error{ErrorKind::kNoInput, "there is nothing to plan", a.list.string(), "it names no session",
                    "write the folder of a session on each line"};
@@ -98,37 +99,37 @@ std::string hours_words(double hours) {
   return hours < 1 ? fmt::format("{:.2g} minutes", 60 * hours) : fmt::format("{:.3g} hours", hours);
 }
 
-void print_left_out(const batch::Plan& plan) {
+void print_left_out(const library::BatchPlan& plan) {
   const std::array words = {"have their solve already", "cannot be solved", "would turn by less than asked",
                             "reach no such error at any level"};
-  for (std::size_t r = 0; r < batch::kReasonNames.size(); ++r) {
+  for (std::size_t r = 0; r < library::kReasonNames.size(); ++r) {
     int count = 0;
     double seconds = 0;
-    for (const batch::SkippedSession& left : plan.left_out) {
+    for (const library::SkippedSession& left : plan.left_out) {
       if (static_cast<std::size_t>(left.reason) != r) continue;
       ++count;
       seconds += left.seconds;
     }
     if (count == 0) continue;
-    const bool saves = seconds > 0 && r != static_cast<std::size_t>(batch::Reason::kUnsolvable);
+    const bool saves = seconds > 0 && r != static_cast<std::size_t>(library::SkipReason::kUnsolvable);
     print(fmt::format("{} left out: they {}{}", count, words[r],
                       saves ? ", " + hours_words(seconds / 3600) + " saved" : ""));
   }
-  for (const batch::SkippedSession& left : plan.left_out) {
-    if (left.reason == batch::Reason::kUnsolvable) note(left.said);
+  for (const library::SkippedSession& left : plan.left_out) {
+    if (left.reason == library::SkipReason::kUnsolvable) note(left.said);
   }
 }
 
 struct PlanSums {
   double hours = 0, read_gb = 0, write_gb = 0;
-  batch::MeanError error;
+  library::MeanError error;
   std::uint64_t memory_bytes = 0;
 };
 
-PlanSums sums_of(const batch::Plan& plan) {
+PlanSums sums_of(const library::BatchPlan& plan) {
   PlanSums sums;
-  sums.error = batch::error_of(plan.solves);
-  for (const batch::PlannedSolve& planned : plan.solves) {
+  sums.error = library::error_of(plan.solves);
+  for (const library::PlannedSolve& planned : plan.solves) {
     sums.hours += planned.forecast.seconds / 3600;
     sums.read_gb += static_cast<double>(planned.read_bytes) * 1e-9;
     sums.write_gb += static_cast<double>(planned.write_bytes) * 1e-9;
@@ -137,61 +138,61 @@ PlanSums sums_of(const batch::Plan& plan) {
   return sums;
 }
 
-void print_plan(const PlanBatchReport& report) {
-  const batch::Plan& plan = report.plan;
-  const batch::Header& header = plan.header;
+void print_plan(const library::PlanBatchReport& report) {
+  const library::BatchPlan& plan = report.plan;
+  const library::BatchHeader& header = plan.header;
   print("level       node-hours of all   degrees        of  spread  planned");
-  for (const batch::LevelTotal& level : header.levels) {
-    const std::string error = header.sampled > 0
-                                  ? fmt::format("{:>9.3g} {:>9} {:>7.2g}", level.mean_deg,
-                                                share_in_words(level.solved.value_or(1)), level.spread_deg)
-                                  : fmt::format("{:>9} {:>9} {:>7}", "-", "-", "-");
+  for (const library::LevelTotal& level : header.levels) {
+    const std::string error =
+        header.sampled > 0 ? fmt::format("{:>9.3g} {:>9} {:>7.2g}", level.mean_deg,
+                                         solve::share_in_words(level.solved.value_or(1)), level.spread_deg)
+                           : fmt::format("{:>9} {:>9} {:>7}", "-", "-", "-");
     print(fmt::format("{:<10} {:>18.3g} {} {:>8}", level.quality, level.hours, error, level.sessions));
   }
   if (!header.curve.empty())
     print(
         "hours spent where they buy most, and the mean error in degrees, a radian where there is no normal:");
-  for (const batch::Spent& spent : header.curve)
+  for (const library::Spent& spent : header.curve)
     print(fmt::format("  {:>9.3g} {:>9.3g}", spent.hours, spent.mean_deg));
   const PlanSums sums = sums_of(plan);
-  print(fmt::format(
-      "sessions {}, tasks {}: {}, {}, {:.3g} GB read, {:.3g} GB written, {} MB of memory", header.sessions,
-      header.tasks.size(), hours_words(sums.hours),
-      header.sampled > 0 ? error_in_words(sums.error.degrees(), sums.error.solved()) : "no error foretold",
-      sums.read_gb, sums.write_gb, sums.memory_bytes >> 20));
+  print(fmt::format("sessions {}, tasks {}: {}, {}, {:.3g} GB read, {:.3g} GB written, {} MB of memory",
+                    header.sessions, header.tasks.size(), hours_words(sums.hours),
+                    header.sampled > 0 ? solve::error_in_words(sums.error.degrees(), sums.error.solved())
+                                       : "no error foretold",
+                    sums.read_gb, sums.write_gb, sums.memory_bytes >> 20));
   print(
       fmt::format("  measured on {} of them in {:.3g} s, with {} threads; the rest of planning took {:.3g} s",
                   header.sampled, header.sample_seconds, header.threads, report.seconds));
   if (!header.product.then.empty())
     print(fmt::format("  {} of each {} these hours", fmt::join(header.product.then, ", "),
                       header.sampled > 0 ? "are among" : "come on top of"));
-  for (const batch::PlannedSolve& planned : plan.solves) {
+  for (const library::PlannedSolve& planned : plan.solves) {
     if (planned.forecast.solved < kLeastSolved)
       note(fmt::format("{}: only {} of its cloth will have a normal: scan it again",
                        std::filesystem::path(planned.session).stem().string(),
-                       share_in_words(planned.forecast.solved)));
+                       solve::share_in_words(planned.forecast.solved)));
   }
   print_left_out(plan);
   print(report.file.string());
 }
 
-Json plan_json(const PlanBatchReport& report) {
-  const batch::Header& header = report.plan.header;
+Json plan_json(const library::PlanBatchReport& report) {
+  const library::BatchHeader& header = report.plan.header;
   const PlanSums sums = sums_of(report.plan);
   Json levels = Json::array(), curve = Json::array(), left_out = Json::array();
   const auto if_sampled = [&](double number) { return header.sampled > 0 ? Json(number) : Json(); };
-  for (const batch::LevelTotal& level : header.levels)
+  for (const library::LevelTotal& level : header.levels)
     levels.push_back({{"quality", level.quality},
                       {"hours", level.hours},
                       {"mean_deg", if_sampled(level.mean_deg)},
                       {"spread_deg", if_sampled(level.spread_deg)},
                       {"solved", if_sampled(level.solved.value_or(1))},
                       {"sessions", level.sessions}});
-  for (const batch::Spent& spent : header.curve)
+  for (const library::Spent& spent : header.curve)
     curve.push_back({{"hours", spent.hours}, {"mean_deg", spent.mean_deg}});
-  for (const batch::SkippedSession& left : report.plan.left_out)
+  for (const library::SkippedSession& left : report.plan.left_out)
     left_out.push_back({{"session", left.session},
-                        {"left_out", batch::kReasonNames[static_cast<std::size_t>(left.reason)]},
+                        {"left_out", library::kReasonNames[static_cast<std::size_t>(left.reason)]},
                         {"said", left.said},
                         {"seconds", left.seconds}});
   return {{"plan", report.file.string()},
@@ -213,12 +214,12 @@ Json plan_json(const PlanBatchReport& report) {
 }
 
 Result<int> plan(const PlanArguments& a, const CommonArguments& common) {
-  PlanBatchOptions options = a.options;
+  library::PlanBatchOptions options = a.options;
   if (Result<void> fits = check_fields(options); !fits) return std::move(fits).error();
   if (Result<void> ok = add_sessions(a, common, options); !ok) return std::move(ok).error();
-  const Result<PlanBatchReport> report = [&] {
+  const Result<library::PlanBatchReport> report = [&] {
     ProgressLine line(common.quiet);
-    return plan_batch(options, {common.threads, stop_on_signal(), line.callback()});
+    return library::plan_batch(options, {common.threads, stop_on_signal(), line.callback()});
   }();
   if (!report) return report.error();
   if (common.json) {
@@ -229,25 +230,25 @@ Result<int> plan(const PlanArguments& a, const CommonArguments& common) {
   return kDone;
 }
 
-std::string words_of(const batch::Outcome& outcome) {
+std::string words_of(const library::TaskOutcome& outcome) {
   const std::string name = std::filesystem::path(outcome.session).stem().string();
   switch (outcome.state) {
-    case batch::State::kSolved:
-    case batch::State::kThere:
+    case library::TaskState::kSolved:
+    case library::TaskState::kThere:
       return fmt::format(
           "{}: {}{}{}{}", name,
-          outcome.state == batch::State::kThere ? "is there already"
-                                                : fmt::format("solved in {:.2f} s", outcome.seconds),
-          outcome.solved_share() < kLeastSolved
-              ? fmt::format(", but only {} of its cloth has a normal", share_in_words(outcome.solved_share()))
-              : "",
+          outcome.state == library::TaskState::kThere ? "is there already"
+                                                      : fmt::format("solved in {:.2f} s", outcome.seconds),
+          outcome.solved_share() < kLeastSolved ? fmt::format(", but only {} of its cloth has a normal",
+                                                              solve::share_in_words(outcome.solved_share()))
+                                                : "",
           outcome.change ? fmt::format(", turned by {:.3g} degrees", outcome.change->mean_deg) : "",
-          outcome.change && batch::regression_weight(*outcome.change) > 0
-              ? fmt::format(", worse: {}", fmt::join(batch::regressions(*outcome.change), "; "))
+          outcome.change && library::regression_weight(*outcome.change) > 0
+              ? fmt::format(", worse: {}", fmt::join(library::regressions(*outcome.change), "; "))
               : "");
-    case batch::State::kFailed:
+    case library::TaskState::kFailed:
       return fmt::format("{}: failed: {}", name, outcome.error->message());
-    case batch::State::kLost:
+    case library::TaskState::kLost:
       break;
   }
   return fmt::format("{}: no result: {}", name, outcome.error->message());
@@ -259,14 +260,14 @@ int code_of_all(const std::vector<ErrorKind>& kinds, int otherwise) {
   return is_one && !kinds.empty() ? exit_code_of(kinds.front()) : otherwise;
 }
 
-int code_of(const RunBatchReport& report) {
+int code_of(const library::RunBatchReport& report) {
   if (report.was_stopped) return kTryAgainError;
   if (!report.losses.empty()) return code_of_all(report.losses, kTryAgainError);
   if (!report.failures.empty()) return code_of_all(report.failures, kBadDataError);
   return kDone;
 }
 
-void print_run(const RunBatchReport& report, const std::optional<MergeReport>& merged,
+void print_run(const library::RunBatchReport& report, const std::optional<library::MergeReport>& merged,
                const CommonArguments& common) {
   if (common.json) {
     Json document = {{"kept", report.kept},           {"kept_failures", report.kept_failures},
@@ -275,7 +276,7 @@ void print_run(const RunBatchReport& report, const std::optional<MergeReport>& m
                      {"not_begun", report.not_begun}, {"stopped", report.was_stopped},
                      {"seconds", report.seconds}};
     if (merged) {
-      const batch::Summary& s = merged->state.summary;
+      const library::BatchSummary& s = merged->state.summary;
       document["report"] = {{"folder", merged->folder.string()},
                             {"failed", s.failed},
                             {"missing", s.missing},
@@ -292,14 +293,14 @@ void print_run(const RunBatchReport& report, const std::optional<MergeReport>& m
   if (merged) print("look at " + (merged->folder / "report.html").string());
 }
 
-Result<int> run(const RunBatchRequest& request, const CommonArguments& common) {
-  RunBatchOptions options = request.options;
+Result<int> run(const library::RunBatchRequest& request, const CommonArguments& common) {
+  library::RunBatchOptions options = request.options;
   if (request.array_from) {
-    const Result<int> task = task_of_array(*request.array_from);
+    const Result<int> task = library::task_of_array(*request.array_from);
     if (!task) return task.error();
     options.task = *task;
   }
-  const auto after = [&](const batch::Outcome& outcome, double hours_left) {
+  const auto after = [&](const library::TaskOutcome& outcome, double hours_left) {
     const bool is_bad = !outcome.is_done();
     if (common.quiet && !is_bad) return;
     note(fmt::format("{}; {} left", words_of(outcome), hours_words(hours_left)));
@@ -307,11 +308,11 @@ Result<int> run(const RunBatchRequest& request, const CommonArguments& common) {
   // Each session is a line of its own for people; programs hear of shares too.
   ProgressLine line(true);
   const JobContext context = {common.threads, stop_on_signal(), line.callback()};
-  const Result<RunBatchReport> report = run_batch(options, context, after);
+  const Result<library::RunBatchReport> report = library::run_batch(options, context, after);
   if (!report) return report.error();
-  std::optional<MergeReport> merged;
+  std::optional<library::MergeReport> merged;
   if (request.merges && !report->was_stopped) {
-    Result<MergeReport> made = merge_batch(options.plan, context);
+    Result<library::MergeReport> made = library::merge_batch(options.plan, context);
     if (!made) return std::move(made).error();
     merged = std::move(*made);
   }
@@ -342,7 +343,7 @@ Run add_plan(Options& options) {
 }
 
 Run add_run(Options& options) {
-  const auto a = std::make_shared<RunBatchRequest>();
+  const auto a = std::make_shared<library::RunBatchRequest>();
   add_options(options, *a);
   return [a](const CommonArguments& common) { return run(*a, common); };
 }

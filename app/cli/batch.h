@@ -28,8 +28,8 @@ Result<int> print_batch_commands(const std::filesystem::path& plan, bool only_mi
                                  const CommonArguments& common);
 
 /// What Slurm has of a batch, for `weft batch status`.
-Json json_of_queue(const batch::Queue& queue);
-void print_queue(const batch::Queue& queue, const std::vector<int>& missing_tasks);
+Json json_of_queue(const library::FarmQueue& queue);
+void print_queue(const library::FarmQueue& queue, const std::vector<int>& missing_tasks);
 
 /// Has Slurm queue a task again that ended with 75; the exit code is that of the task.
 int after_own_task(int code);

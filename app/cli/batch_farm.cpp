@@ -20,20 +20,20 @@ namespace weft::app {
 namespace {
 
 struct SubmitArguments {
-  SubmitOptions options;
+  library::SubmitOptions options;
   std::string backend = "slurm";
 };
 
 // The command as a shell takes it.
 std::string shell_line(const std::vector<std::string>& command) {
   std::string line;
-  for (const std::string& word : command) line += (line.empty() ? "" : " ") + batch::shell_word(word);
+  for (const std::string& word : command) line += (line.empty() ? "" : " ") + library::shell_word(word);
   return line;
 }
 
-Json submitted_json(const SubmitReport& report) {
+Json submitted_json(const library::SubmitReport& report) {
   Json arrays = Json::array();
-  for (const SbatchCall& each : report.arrays)
+  for (const library::SbatchCall& each : report.arrays)
     arrays.push_back({{"job", each.job},
                       {"tasks", each.array.tasks},
                       {"memory_bytes", each.array.memory_bytes},
@@ -47,11 +47,11 @@ Json submitted_json(const SubmitReport& report) {
   return document;
 }
 
-void print_submitted(const SubmitReport& report, bool dry_run) {
+void print_submitted(const library::SubmitReport& report, bool dry_run) {
   if (!report.queued.tasks.empty())
     print(fmt::format("{} tasks are queued already: job {}", report.queued.tasks.size(),
                       fmt::join(report.queued.jobs(), ", ")));
-  for (const SbatchCall& each : report.arrays) {
+  for (const library::SbatchCall& each : report.arrays) {
     print(dry_run ? shell_line(each.command)
                   : fmt::format("job {}: {} tasks, {} MB and {} minutes each", each.job,
                                 each.array.tasks.size(), each.array.memory_bytes >> 20, each.array.minutes));
@@ -64,7 +64,7 @@ void print_submitted(const SubmitReport& report, bool dry_run) {
 
 Result<int> submit_plan(const SubmitArguments& a, const CommonArguments& common) {
   if (a.backend == "commands") return print_batch_commands(a.options.plan, true, common);
-  const Result<SubmitReport> report = submit_batch(a.options);
+  const Result<library::SubmitReport> report = library::submit_batch(a.options);
   if (!report) return report.error();
   if (common.json) {
     print_json(submitted_json(*report));
@@ -75,7 +75,7 @@ Result<int> submit_plan(const SubmitArguments& a, const CommonArguments& common)
 }
 
 Result<int> cancel_plan(const std::filesystem::path& plan, const CommonArguments& common) {
-  const Result<batch::Queue> queue = cancel_batch(plan);
+  const Result<library::FarmQueue> queue = library::cancel_batch(plan);
   if (!queue) return queue.error();
   if (common.json) {
     print_json({{"cancelled", queue->tasks.size()}, {"jobs", queue->jobs()}});
@@ -89,7 +89,7 @@ Result<int> cancel_plan(const std::filesystem::path& plan, const CommonArguments
 
 Run add_submit(Options& options) {
   const auto a = std::make_shared<SubmitArguments>();
-  batch::FarmOptions& farm = a->options.farm;
+  library::FarmOptions& farm = a->options.farm;
   options.add("plan", &a->options.plan, "Plan of weft batch plan").required();
   options.add("--backend", &a->backend, "slurm, or commands: one command a line for any other farm")
       .one_of({"slurm", "commands"})
@@ -115,28 +115,28 @@ Run add_cancel(Options& options) {
 
 }  // namespace
 
-Json json_of_queue(const batch::Queue& queue) {
+Json json_of_queue(const library::FarmQueue& queue) {
   return {{"running", queue.count("RUNNING")},
           {"queued", queue.tasks.size()},
           {"jobs", queue.jobs()},
           {"merge", queue.merges}};
 }
 
-void print_queue(const batch::Queue& queue, const std::vector<int>& missing_tasks) {
+void print_queue(const library::FarmQueue& queue, const std::vector<int>& missing_tasks) {
   if (queue.tasks.empty() && queue.merges.empty()) return;
-  const auto delayed = std::ranges::count(queue.tasks, "BeginTime", &batch::QueuedTask::reason);
+  const auto delayed = std::ranges::count(queue.tasks, "BeginTime", &library::QueuedTask::reason);
   print(fmt::format(
       "Slurm: {} tasks run, {} wait{}: job {}", queue.count("RUNNING"),
       static_cast<int>(queue.tasks.size()) - queue.count("RUNNING"),
       delayed > 0 ? fmt::format(", {} of them for their time after they were queued again", delayed) : "",
       fmt::join(queue.jobs(), ", ")));
-  const std::size_t lost = batch::not_queued(missing_tasks, queue).size();
+  const std::size_t lost = library::not_queued(missing_tasks, queue).size();
   if (lost > 0) print(fmt::format("  {} tasks have work left and are not queued: weft batch submit", lost));
 }
 
 int after_own_task(int code) {
   if (code != kTryAgainError) return code;
-  const Result<bool> queued = requeue_own_task();
+  const Result<bool> queued = library::requeue_own_task();
   if (!queued) complain(queued.error());
   note(queued && *queued ? "queued again by Slurm" : "not queued again");
   return code;

@@ -25,7 +25,7 @@
 namespace weft::app {
 namespace {
 
-void print_state(const batch::Summary& s) {
+void print_state(const library::BatchSummary& s) {
   print(fmt::format("{} solved, {} there already, {} failed, {} missing, {} begun more than once", s.solved,
                     s.there, s.failed, s.missing, s.second_attempts));
   if (s.predicted_seconds > 0)
@@ -33,17 +33,17 @@ void print_state(const batch::Summary& s) {
         "  {:.3g} node-hours, {:.3g} predicted of these, {:.2f} times what it took; {}, predicted {}; {} MB "
         "at most",
         s.seconds / 3600, s.predicted_seconds / 3600, s.seconds_ratio(),
-        error_in_words(s.error.degrees(), s.error.solved()),
-        error_in_words(s.predicted_error.degrees(), s.predicted_error.solved()), s.peak_bytes >> 20));
+        solve::error_in_words(s.error.degrees(), s.error.solved()),
+        solve::error_in_words(s.predicted_error.degrees(), s.predicted_error.solved()), s.peak_bytes >> 20));
   if (!s.warned.empty()) print(fmt::format("  {} of those solved warn", s.warned.size()));
-  for (const batch::Cause& cause : s.causes)
+  for (const library::Cause& cause : s.causes)
     print(fmt::format("  {} {}: {}", cause.sessions, cause.sessions == 1 ? "session" : "sessions",
                       cause.example));
 }
 
-void print_changes(const BatchState& state) {
+void print_changes(const library::BatchState& state) {
   constexpr std::size_t kMostShown = 10;
-  const batch::Summary& s = state.summary;
+  const library::BatchSummary& s = state.summary;
   if (s.changed.empty()) return;
   print(fmt::format("{} compared with the solve before, {} worse in something, {} without a changed pixel",
                     s.changed.size(), s.worse, s.unchanged));
@@ -53,25 +53,25 @@ void print_changes(const BatchState& state) {
   }
   print("  mean   95 %    albedo  session");
   for (std::size_t i = 0; i < std::min(kMostShown, s.changed.size()); ++i) {
-    const batch::Row& row = state.rows[s.changed[i]];
-    const batch::MapChange& change = *row.result->change;
+    const library::BatchRow& row = state.rows[s.changed[i]];
+    const library::MapChange& change = *row.result->change;
     print(fmt::format("{:>6.3g} {:>6.3g} {:>+7.2f} %  {}  {}", change.mean_deg, change.p95_deg,
                       100 * change.albedo_bias_rel,
                       std::filesystem::path(row.planned->session).stem().string(),
-                      fmt::join(batch::regressions(change), "; ")));
+                      fmt::join(library::regressions(change), "; ")));
   }
 }
 
 Result<int> merge(const std::filesystem::path& plan, const CommonArguments& common) {
-  const Result<MergeReport> report = [&] {
+  const Result<library::MergeReport> report = [&] {
     ProgressLine line(common.quiet);
-    return merge_batch(plan, {common.threads, stop_on_signal(), line.callback()});
+    return library::merge_batch(plan, {common.threads, stop_on_signal(), line.callback()});
   }();
   if (!report) return report.error();
-  const BatchState& state = report->state;
+  const library::BatchState& state = report->state;
   if (common.json) {
-    Json document = object_of(batch::SummaryDocument{state.summary, state.rows});
-    document["verdicts"] = weft::json_of(verdicts_of(state));
+    Json document = object_of(library::SummaryDocument{state.summary, state.rows});
+    document["verdicts"] = weft::json_of(library::verdicts_of(state));
     document["folder"] = report->folder.string();
     document["abandoned"] = report->abandoned;
     print_json(document);
@@ -82,16 +82,16 @@ Result<int> merge(const std::filesystem::path& plan, const CommonArguments& comm
     print_changes(state);
     print("look at " + (report->folder / "report.html").string());
   }
-  for (const Verdict& verdict : verdicts_of(state))
+  for (const Verdict& verdict : library::verdicts_of(state))
     note(fmt::format("{}.{}", verdict.text, verdict.remedy.empty() ? "" : " To do: " + verdict.remedy + "."));
   return state.summary.is_whole() ? kDone : kDoneWithWarnings;
 }
 
 Result<int> status(const std::filesystem::path& plan, const CommonArguments& common) {
-  const Result<BatchState> state = read_batch(plan);
+  const Result<library::BatchState> state = library::read_batch(plan);
   if (!state) return state.error();
-  const batch::Summary& s = state->summary;
-  const Result<std::optional<batch::Queue>> queue = queue_of_batch(state->file);
+  const library::BatchSummary& s = state->summary;
+  const Result<std::optional<library::FarmQueue>> queue = library::queue_of_batch(state->file);
   if (!queue) note(queue.error().message());
   const bool has_queue = queue && *queue;
   if (common.json) {
@@ -112,12 +112,12 @@ Result<int> status(const std::filesystem::path& plan, const CommonArguments& com
   return s.is_whole() ? kDone : kDoneWithWarnings;
 }
 
-Result<int> accept_solves(const AcceptBatchOptions& options, const CommonArguments& common) {
-  const Result<std::vector<Accepted>> all = accept_batch(options);
+Result<int> accept_solves(const library::AcceptBatchOptions& options, const CommonArguments& common) {
+  const Result<std::vector<library::Accepted>> all = library::accept_batch(options);
   if (!all) return all.error();
   Json sessions = Json::array();
   int moved = 0;
-  for (const Accepted& each : *all) {
+  for (const library::Accepted& each : *all) {
     if (each.is_moved) ++moved;
     sessions.push_back({{"session", each.session},
                         {"solve", each.solve},
@@ -137,11 +137,11 @@ Result<int> accept_solves(const AcceptBatchOptions& options, const CommonArgumen
 }
 
 Result<int> prune(const std::filesystem::path& plan, int keep, bool yes, const CommonArguments& common) {
-  const Result<std::vector<Freed>> freed = prune_batch(plan, keep, yes);
+  const Result<std::vector<library::Freed>> freed = library::prune_batch(plan, keep, yes);
   if (!freed) return freed.error();
   std::uint64_t bytes = 0;
   Json solves = Json::array();
-  for (const Freed& each : *freed) {
+  for (const library::Freed& each : *freed) {
     bytes += each.bytes;
     solves.push_back({{"session", each.session}, {"solve", each.solve}, {"bytes", each.bytes}});
     if (!common.json)
@@ -184,7 +184,7 @@ Run add_commands(Options& options) {
 }
 
 Run add_batch_accept(Options& options) {
-  const auto a = std::make_shared<AcceptBatchOptions>();
+  const auto a = std::make_shared<library::AcceptBatchOptions>();
   add_plan_file(options, a->plan);
   options.add("sessions", &a->sessions, "Names of sessions; default all of the plan");
   options.add_flag("--with-worse", &a->with_worse, "Also those that became worse in something");
@@ -214,11 +214,11 @@ Result<int> print_batch_commands(const std::filesystem::path& plan, bool only_mi
                                  const CommonArguments& common) {
   std::vector<int> tasks;
   if (only_missing) {
-    const Result<BatchState> state = read_batch(plan);
+    const Result<library::BatchState> state = library::read_batch(plan);
     if (!state) return state.error();
     tasks = state->summary.missing_tasks;
   } else {
-    const Result<PlanFile> file = open_plan(plan);
+    const Result<library::PlanFile> file = library::open_plan(plan);
     if (!file) return file.error();
     for (int task = 0; task < static_cast<int>(file->header.tasks.size()); ++task) tasks.push_back(task);
   }
@@ -227,8 +227,8 @@ Result<int> print_batch_commands(const std::filesystem::path& plan, bool only_mi
   const std::string file = std::filesystem::absolute(plan, failed).lexically_normal().string();
   Json lines = Json::array();
   for (const int task : tasks) {
-    const std::string line = fmt::format("{} batch run {} --task {} -q", batch::shell_word(program),
-                                         batch::shell_word(file), task);
+    const std::string line = fmt::format("{} batch run {} --task {} -q", library::shell_word(program),
+                                         library::shell_word(file), task);
     lines.push_back(line);
     if (!common.json) print(line);
   }

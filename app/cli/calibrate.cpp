@@ -38,9 +38,9 @@ void print_table(const report::Table& table) {
   for (const auto& row : table.rows) print_row(row);
 }
 
-void print_outcome(const CalibrateOutcome& outcome, const CommonArguments& common) {
+void print_outcome(const calibration::CalibrateOutcome& outcome, const CommonArguments& common) {
   if (common.json) {
-    Json document = document_of(outcome.report);
+    Json document = calibration::document_of(outcome.report);
     document["folder"] = outcome.folder.string();
     document["id"] = outcome.calibration.id;
     document["warnings"] = outcome.warnings;
@@ -62,7 +62,7 @@ void print_outcome(const CalibrateOutcome& outcome, const CommonArguments& commo
   }
 }
 
-void print_notes(const CalibrateOutcome& outcome) {
+void print_notes(const calibration::CalibrateOutcome& outcome) {
   for (const Verdict& verdict : outcome.report.verdicts) {
     note(fmt::format("{}.{}", verdict.text, verdict.remedy.empty() ? "" : " To do: " + verdict.remedy + "."));
   }
@@ -73,7 +73,7 @@ Run run_work(Options& options, CalibrateWork work, ExitCode of_verdicts) {
   const auto strict = std::make_shared<bool>(false);
   options.add_flag("--strict", strict.get(), "Exit with 2 where the report has something to say");
   return [strict, work = std::move(work), of_verdicts](const CommonArguments& common) -> Result<int> {
-    const Result<CalibrateOutcome> outcome = run_and_print(work, common);
+    const Result<calibration::CalibrateOutcome> outcome = run_and_print(work, common);
     if (!outcome) return outcome.error();
     if (!outcome->report.verdicts.empty() && of_verdicts != kDone) return of_verdicts;
     const bool warned = !outcome->report.verdicts.empty() || !outcome->warnings.empty();
@@ -83,8 +83,9 @@ Run run_work(Options& options, CalibrateWork work, ExitCode of_verdicts) {
 
 }  // namespace
 
-Result<CalibrateOutcome> run_and_print(const CalibrateWork& work, const CommonArguments& common) {
-  Result<CalibrateOutcome> outcome = [&] {
+Result<calibration::CalibrateOutcome> run_and_print(const CalibrateWork& work,
+                                                    const CommonArguments& common) {
+  Result<calibration::CalibrateOutcome> outcome = [&] {
     ProgressLine line(common.quiet);
     return work({common.threads, stop_on_signal(), line.callback()});
   }();

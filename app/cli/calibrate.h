@@ -12,10 +12,10 @@
 namespace weft::app {
 
 /// The work of one step, by what its options have read.
-using CalibrateWork = std::function<Result<CalibrateOutcome>(const JobContext&)>;
+using CalibrateWork = std::function<Result<calibration::CalibrateOutcome>(const JobContext&)>;
 
 /// Does the work, and prints what came out of it: as JSON, or for people.
-Result<CalibrateOutcome> run_and_print(const CalibrateWork& work, const CommonArguments& common);
+Result<calibration::CalibrateOutcome> run_and_print(const CalibrateWork& work, const CommonArguments& common);
 
 /// Prints what a calibration makes different from the rig's own. `is_accepted` is said of it in JSON.
 Result<void> print_change(const std::filesystem::path& rig_file, const std::filesystem::path& calibration,

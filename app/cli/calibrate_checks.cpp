@@ -27,41 +27,44 @@
 namespace weft::app {
 namespace {
 
-Result<CalibrateOutcome> check(const CalibrateCheckOptions& sheets, const JobContext& context) {
+Result<calibration::CalibrateOutcome> check(const calibration::CalibrateCheckOptions& sheets,
+                                            const JobContext& context) {
   if (!sheets.session.empty()) {
-    CheckRigOptions rig;
+    calibration::CheckRigOptions rig;
     rig.session = sheets.session;
     rig.from = sheets.from;
     rig.sheet = sheets.sheet;
     rig.output = sheets.output;
     rig.paper_delta = sheets.paper_delta;
-    return calibrate_check_rig(rig, context);
+    return calibration::calibrate_check_rig(rig, context);
   }
-  return calibrate_check(sheets, context);
+  return calibration::calibrate_check(sheets, context);
 }
 
 Run add_check(Options& options) {
-  const auto a = std::make_shared<CalibrateCheckOptions>();
+  const auto a = std::make_shared<calibration::CalibrateCheckOptions>();
   add_options(options, *a);
   return run_check(options, [a](const JobContext& context) { return check(*a, context); });
 }
 
 Run add_patches(Options& options) {
-  const auto a = std::make_shared<CalibratePatchesOptions>();
+  const auto a = std::make_shared<calibration::CalibratePatchesOptions>();
   add_options(options, *a);
-  return run_step(options, [a](const JobContext& context) { return calibrate_patches(*a, context); });
+  return run_step(options,
+                  [a](const JobContext& context) { return calibration::calibrate_patches(*a, context); });
 }
 
 Run add_update(Options& options) {
-  const auto a = std::make_shared<CalibrateUpdateOptions>();
+  const auto a = std::make_shared<calibration::CalibrateUpdateOptions>();
   add_options(options, *a);
-  return run_step(options, [a](const JobContext& context) { return calibrate_update(*a, context); });
+  return run_step(options,
+                  [a](const JobContext& context) { return calibration::calibrate_update(*a, context); });
 }
 
 /// Has the daemon of the rig solve those again that were taken after a move. `folder`: where the rig file
 /// lies, else it is looked for as always.
-Result<void> solve_again(const std::vector<AffectedSession>& affected, const std::filesystem::path& folder,
-                         const std::filesystem::path& calibration) {
+Result<void> solve_again(const std::vector<calibration::AffectedSession>& affected,
+                         const std::filesystem::path& folder, const std::filesystem::path& calibration) {
   const std::filesystem::path file = folder / "rig.toml";
   const Result<capture::Rig> rig =
       capture::read_rig(find_rig(is_there(file) ? file : std::filesystem::path()));
@@ -76,7 +79,7 @@ Result<void> solve_again(const std::vector<AffectedSession>& affected, const std
   if (!daemon) return daemon.error();
   const std::string below = absolute_folder(calibration).lexically_relative(rig->folder()).string();
   int queued = 0;
-  for (const AffectedSession& each : affected) {
+  for (const calibration::AffectedSession& each : affected) {
     if (!each.after_move) continue;
     const Result<Json> job =
         daemon->post("/api/v1/jobs",
@@ -90,7 +93,7 @@ Result<void> solve_again(const std::vector<AffectedSession>& affected, const std
 }
 
 Run add_history(Options& options) {
-  const auto a = std::make_shared<CalibrateHistoryOptions>();
+  const auto a = std::make_shared<calibration::CalibrateHistoryOptions>();
   const auto calibration = std::make_shared<std::filesystem::path>();
   options.add("rig", &a->rig, "Folder that holds calibrations and results of checks").required();
   const Option affected =
@@ -101,15 +104,17 @@ Run add_history(Options& options) {
       .add("--solve", calibration.get(),
            "With --affected: the rig's daemon solves those taken after a move again, by this calibration")
       .needs(affected);
-  return run_step(options, [a, calibration](const JobContext& context) -> Result<CalibrateOutcome> {
-    Result<CalibrationHistory> history = calibrate_history(*a, context);
-    if (!history) return std::move(history).error();
-    if (!calibration->empty()) {
-      if (Result<void> queued = solve_again(history->affected, a->rig, *calibration); !queued)
-        return std::move(queued).error();
-    }
-    return CalibrateOutcome{a->output, {}, std::move(history->report), std::move(history->warnings)};
-  });
+  return run_step(
+      options, [a, calibration](const JobContext& context) -> Result<calibration::CalibrateOutcome> {
+        Result<calibration::CalibrationHistory> history = calibration::calibrate_history(*a, context);
+        if (!history) return std::move(history).error();
+        if (!calibration->empty()) {
+          if (Result<void> queued = solve_again(history->affected, a->rig, *calibration); !queued)
+            return std::move(queued).error();
+        }
+        return calibration::CalibrateOutcome{
+            a->output, {}, std::move(history->report), std::move(history->warnings)};
+      });
 }
 
 struct AcceptArguments {
@@ -123,7 +128,8 @@ Result<void> print_change(const std::filesystem::path& rig_file, const std::file
                           bool is_accepted, const CommonArguments& common) {
   const Result<capture::Rig> rig = capture::read_rig(rig_file);
   if (!rig) return rig.error();
-  const Result<CalibrationChange> change = change_between(rig->scan.calibration, calibration);
+  const Result<calibration::CalibrationChange> change =
+      calibration::change_between(rig->scan.calibration, calibration);
   if (!change) return change.error();
   if (common.json) {
     Json document = json_of(*change);
@@ -138,7 +144,7 @@ Result<void> print_change(const std::filesystem::path& rig_file, const std::file
 
 Result<void> accept_calibration(const std::filesystem::path& rig_file,
                                 const std::filesystem::path& calibration) {
-  if (Result<void> named = name_calibration(rig_file, calibration); !named) return named;
+  if (Result<void> named = calibration::name_calibration(rig_file, calibration); !named) return named;
   note(rig_file.string() + " names it from now on");
   return {};
 }

@@ -16,7 +16,8 @@ namespace weft::app {
 namespace {
 
 // A step with the options that its job describes.
-template <typename StepOptions, Result<CalibrateOutcome> (*kStep)(const StepOptions&, const JobContext&)>
+template <typename StepOptions,
+          Result<calibration::CalibrateOutcome> (*kStep)(const StepOptions&, const JobContext&)>
 Run add_step(Options& options) {
   const auto a = std::make_shared<StepOptions>();
   add_options(options, *a);
@@ -27,28 +28,28 @@ Run add_step(Options& options) {
 
 Verb calibrate_camera_verb() {
   return {"camera", "Lens and pose from photographs of a checkerboard or ChArUco board",
-          add_step<CalibrateCameraOptions, calibrate_camera>};
+          add_step<calibration::CalibrateCameraOptions, calibration::calibrate_camera>};
 }
 
 Verb calibrate_response_verb() {
   return {"response", "What counts say of light: noise, black level, linearity, bad photosites",
-          add_step<CalibrateResponseOptions, calibrate_response>};
+          add_step<calibration::CalibrateResponseOptions, calibration::calibrate_response>};
 }
 
 Verb calibrate_color_verb() {
   return {"color", "From the camera's channels to linear Rec.709, by a 24-patch chart",
-          add_step<CalibrateColorOptions, calibrate_color>};
+          add_step<calibration::CalibrateColorOptions, calibration::calibrate_color>};
 }
 
 Verb calibrate_lights_verb() {
   return {"lights", "Where the LEDs are and how they shine, from white paper in five or more poses",
-          add_step<CalibrateLightsOptions, calibrate_lights>};
+          add_step<calibration::CalibrateLightsOptions, calibration::calibrate_lights>};
 }
 
 Verb calibrate_grey_verb() {
   return {"grey",
           "How bright each LED is by channel, and its white balance, from a grey scale of known reflectances",
-          add_step<CalibrateGreyOptions, calibrate_grey>};
+          add_step<calibration::CalibrateGreyOptions, calibration::calibrate_grey>};
 }
 
 }  // namespace weft::app

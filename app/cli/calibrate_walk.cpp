@@ -46,19 +46,19 @@ struct WalkArguments {
   bool trap = false, once = false, enough = false, yes = false;
 };
 
-using SetWork = Result<CalibrateOutcome> (*)(const fs::path& set, const fs::path& from,
-                                             const fs::path& output, const JobContext& context);
+using SetWork = Result<calibration::CalibrateOutcome> (*)(const fs::path& set, const fs::path& from,
+                                                          const fs::path& output, const JobContext& context);
 
 /// One of the walk, as it is told.
-struct Stage : WalkStage {
+struct Stage : calibration::WalkStage {
   fs::path description;  ///< of its board, sheet or chart; empty: not told
   SetWork work;          ///< of the set in a folder, by a calibration, into another folder
 };
 
 /// The work whose options name a set, a calibration and an output.
 template <auto kInput, auto kWork, typename WorkOptions>
-Result<CalibrateOutcome> of_set(const fs::path& set, const fs::path& from, const fs::path& output,
-                                const JobContext& context) {
+Result<calibration::CalibrateOutcome> of_set(const fs::path& set, const fs::path& from,
+                                             const fs::path& output, const JobContext& context) {
   WorkOptions options;
   options.*kInput = set;
   options.from = from;
@@ -66,28 +66,34 @@ Result<CalibrateOutcome> of_set(const fs::path& set, const fs::path& from, const
   return kWork(options, context);
 }
 
-constexpr SetWork camera = of_set<&CalibrateCameraOptions::input, calibrate_camera, CalibrateCameraOptions>,
-                  lights = of_set<&CalibrateLightsOptions::input, calibrate_lights, CalibrateLightsOptions>,
-                  color = of_set<&CalibrateColorOptions::input, calibrate_color, CalibrateColorOptions>,
-                  proof = of_set<&CalibrateCheckOptions::input, calibrate_check, CalibrateCheckOptions>,
-                  moved = of_set<&CheckRigOptions::session, calibrate_check_rig, CheckRigOptions>,
-                  update = of_set<&CalibrateUpdateOptions::session, calibrate_update, CalibrateUpdateOptions>;
+constexpr SetWork camera = of_set<&calibration::CalibrateCameraOptions::input, calibration::calibrate_camera,
+                                  calibration::CalibrateCameraOptions>,
+                  lights = of_set<&calibration::CalibrateLightsOptions::input, calibration::calibrate_lights,
+                                  calibration::CalibrateLightsOptions>,
+                  color = of_set<&calibration::CalibrateColorOptions::input, calibration::calibrate_color,
+                                 calibration::CalibrateColorOptions>,
+                  proof = of_set<&calibration::CalibrateCheckOptions::input, calibration::calibrate_check,
+                                 calibration::CalibrateCheckOptions>,
+                  moved = of_set<&calibration::CheckRigOptions::session, calibration::calibrate_check_rig,
+                                 calibration::CheckRigOptions>,
+                  update = of_set<&calibration::CalibrateUpdateOptions::session,
+                                  calibration::calibrate_update, calibration::CalibrateUpdateOptions>;
 
 /// With the black trap of the same walk, where there is one.
-Result<CalibrateOutcome> response(const fs::path& set, const fs::path& from, const fs::path& output,
-                                  const JobContext& context) {
-  CalibrateResponseOptions options;
+Result<calibration::CalibrateOutcome> response(const fs::path& set, const fs::path& from,
+                                               const fs::path& output, const JobContext& context) {
+  calibration::CalibrateResponseOptions options;
   options.input = set;
   options.from = from;
   options.output = output;
   const std::string name = set.filename().string();
   const fs::path trap = set.parent_path() / (name.substr(0, name.rfind('-')) + "-trap");
   if (is_there(trap)) options.trap = trap;
-  return calibrate_response(options, context);
+  return calibration::calibrate_response(options, context);
 }
 
-SetWork work_of(const WalkStage& stage) {
-  if (stage.part == kWalkMoved) return stage.job == "check" ? moved : update;
+SetWork work_of(const calibration::WalkStage& stage) {
+  if (stage.part == calibration::kWalkMoved) return stage.job == "check" ? moved : update;
   constexpr std::array<std::pair<std::string_view, SetWork>, 5> kWorks = {{{"calibrate_camera", camera},
                                                                            {"calibrate_response", response},
                                                                            {"calibrate_lights", lights},
@@ -97,9 +103,9 @@ SetWork work_of(const WalkStage& stage) {
 }
 
 /// Optional ones are those that were asked for.
-std::vector<Stage> stages_of(std::span<const WalkStage> walk, const WalkArguments& a) {
+std::vector<Stage> stages_of(std::span<const calibration::WalkStage> walk, const WalkArguments& a) {
   std::vector<Stage> stages;
-  for (const WalkStage& each : walk) {
+  for (const calibration::WalkStage& each : walk) {
     const fs::path& description = each.thing == "board" ? a.board : each.thing == "chart" ? a.chart : a.sheet;
     const bool is_asked = each.is_aside ? a.trap : !description.empty();
     if (!each.is_optional || is_asked) stages.push_back({each, description, work_of(each)});
@@ -108,15 +114,15 @@ std::vector<Stage> stages_of(std::span<const WalkStage> walk, const WalkArgument
 }
 
 std::vector<Stage> stages_of_all(const WalkArguments& a) {
-  return stages_of(walk_of_all(), a);
+  return stages_of(calibration::walk_of_all(), a);
 }
 
 std::vector<Stage> stages_of_refresh(const WalkArguments& a) {
-  return stages_of(walk_of_refresh(), a);
+  return stages_of(calibration::walk_of_refresh(), a);
 }
 
 bool has_passed(const fs::path& result) {
-  const Result<CheckResult> said = read_check_result(result);
+  const Result<calibration::CheckResult> said = calibration::read_check_result(result);
   return said && said->passed;
 }
 
@@ -145,13 +151,14 @@ class Walk {
       }
       const fs::path result = result_of(name_, stage.result);
       if (!is_there(result)) {
-        const Result<std::optional<CalibrateOutcome>> done = take(stage, calibration, result);
+        const Result<std::optional<calibration::CalibrateOutcome>> done = take(stage, calibration, result);
         if (!done) return done.error();
         if (!*done) return kDone;  // a person stopped here
       }
-      if (stage.result == kWalkCheck && !has_passed(result)) return failed(result);
-      if (stage.result == kWalkMoved && has_passed(result)) return kDone;
-      if (stage.result != kWalkMoved && stage.result != kWalkCheck) calibration = result;
+      if (stage.result == calibration::kWalkCheck && !has_passed(result)) return failed(result);
+      if (stage.result == calibration::kWalkMoved && has_passed(result)) return kDone;
+      if (stage.result != calibration::kWalkMoved && stage.result != calibration::kWalkCheck)
+        calibration = result;
     }
     return accept(calibration);
   }
@@ -169,17 +176,18 @@ class Walk {
     return folder_ / "sets" / fmt::format("{}-{}", name_, stage.part);
   }
   bool has_ended(const std::string& name) const {
-    return is_there(result_of(name, kWalkCheck)) || has_passed(result_of(name, kWalkMoved));
+    return is_there(result_of(name, calibration::kWalkCheck)) ||
+           has_passed(result_of(name, calibration::kWalkMoved));
   }
 
   /// The photographs that a stage lacks, and its result; nothing where more are to be taken later.
-  Result<std::optional<CalibrateOutcome>> take(const Stage& stage, const fs::path& from,
-                                               const fs::path& output) {
+  Result<std::optional<calibration::CalibrateOutcome>> take(const Stage& stage, const fs::path& from,
+                                                            const fs::path& output) {
     const Result<bool> is_complete = photograph(stage, from);
     if (!is_complete) return is_complete.error();
-    if (!*is_complete) return std::optional<CalibrateOutcome>();
+    if (!*is_complete) return std::optional<calibration::CalibrateOutcome>();
     if (Result<void> ok = make_writable_folder(output.parent_path()); !ok) return ok.error();
-    Result<CalibrateOutcome> outcome = run_and_print(
+    Result<calibration::CalibrateOutcome> outcome = run_and_print(
         [&](const JobContext& context) { return stage.work(set_of(stage), from, output, context); }, common_);
     if (!outcome) return std::move(outcome).error();
     return std::optional(std::move(*outcome));
@@ -191,7 +199,8 @@ class Walk {
       const std::string part(stage.part);
       const bool needs_none = stage.thing.empty() || stage.thing == "chart";
       if (needs_none || is_there(set_of(stage)) || !stage.description.empty()) continue;
-      if (!newest_description(folder_ / "sets", *set_part_of(part)).empty()) continue;
+      if (!calibration::newest_description(folder_ / "sets", *calibration::set_part_of(part)).empty())
+        continue;
       return Error{ErrorKind::kUsage, fmt::format("nobody said what the {} is", stage.thing),
                    fmt::format("--{}", stage.thing), "its size and pattern must be known to find it",
                    fmt::format("write a {}.toml (docs/calibration.md) and name it", stage.thing)};
@@ -224,7 +233,7 @@ class Walk {
   /// What the sheets that there are say of the LEDs. One that contradicts the others is told at once.
   void tell_so_far(const Stage& stage, const fs::path& from) const {
     if (stage.part != "sheet" || common_.json) return;
-    const Result<CalibrateOutcome> outcome =
+    const Result<calibration::CalibrateOutcome> outcome =
         lights(set_of(stage), from, {}, {common_.threads, stop_on_signal()});
     if (outcome) {
       print("  so far: " + outcome->report.summary);

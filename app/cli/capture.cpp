@@ -92,7 +92,7 @@ Result<int> capture(const CaptureArguments& a, const CommonArguments& common) {
   return code;
 }
 
-template <SetPart kPart>
+template <calibration::SetPart kPart>
 Run add_capture(Options& options) {
   const std::string part = name_of(kPart);
   const auto a = std::make_shared<CaptureArguments>();
@@ -118,19 +118,21 @@ Run add_capture(Options& options) {
 }  // namespace
 
 Verb capture_verb() {
-  return {
-      .name = "capture",
-      .help = "Take the photographs that a calibration needs, told one by one what to do",
-      .verbs = {{"board", "A board in the poses that tell most of the camera", add_capture<SetPart::kBoard>},
-                {"response", "Pairs of photographs at several exposures, lit and dark",
-                 add_capture<SetPart::kResponse>},
-                {"trap", "White paper with a black trap in its middle: the lens's veil",
-                 add_capture<SetPart::kTrap>},
-                {"sheet", "A white sheet in five poses: where the LEDs are", add_capture<SetPart::kSheet>},
-                {"chart", "The colour chart", add_capture<SetPart::kChart>},
-                {"check", "Other sheets, to prove a calibration by", add_capture<SetPart::kCheck>},
-                {"moved", "A sheet among the table's tags: what of the rig was knocked",
-                 add_capture<SetPart::kMoved>}}};
+  return {.name = "capture",
+          .help = "Take the photographs that a calibration needs, told one by one what to do",
+          .verbs = {
+              {"board", "A board in the poses that tell most of the camera",
+               add_capture<calibration::SetPart::kBoard>},
+              {"response", "Pairs of photographs at several exposures, lit and dark",
+               add_capture<calibration::SetPart::kResponse>},
+              {"trap", "White paper with a black trap in its middle: the lens's veil",
+               add_capture<calibration::SetPart::kTrap>},
+              {"sheet", "A white sheet in five poses: where the LEDs are",
+               add_capture<calibration::SetPart::kSheet>},
+              {"chart", "The colour chart", add_capture<calibration::SetPart::kChart>},
+              {"check", "Other sheets, to prove a calibration by", add_capture<calibration::SetPart::kCheck>},
+              {"moved", "A sheet among the table's tags: what of the rig was knocked",
+               add_capture<calibration::SetPart::kMoved>}}};
 }
 
 }  // namespace weft::app

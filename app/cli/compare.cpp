@@ -42,7 +42,7 @@ std::string albedo_in_words(double mean_rel, double bias_rel) {
   return fmt::format("mean |A - B| / B {:.5f}, bias {:+.5f}", mean_rel, bias_rel);
 }
 
-void print_comparison(const NormalComparison& c, bool json) {
+void print_comparison(const solve::NormalComparison& c, bool json) {
   const bool is_flipped = c.mean_deg > kTellsFlip_deg && 2 * c.flipped_mean_deg < c.mean_deg;
   if (json) {
     Json document = {{"kind", "normal"},           {"pixels", c.pixels},   {"mean_deg", c.mean_deg},
@@ -59,7 +59,7 @@ void print_comparison(const NormalComparison& c, bool json) {
                     c.flipped_mean_deg));
 }
 
-void print_comparison(const AlbedoComparison& c, bool json) {
+void print_comparison(const material::AlbedoComparison& c, bool json) {
   if (json) {
     print_json(
         {{"kind", "albedo"}, {"pixels", c.pixels}, {"mean_rel", c.mean_rel}, {"bias_rel", c.bias_rel}});
@@ -68,9 +68,9 @@ void print_comparison(const AlbedoComparison& c, bool json) {
   print(fmt::format("{} pixels: {}", c.pixels, albedo_in_words(c.mean_rel, c.bias_rel)));
 }
 
-void print_comparison(const std::vector<NumberComparison>& all, bool json) {
+void print_comparison(const std::vector<material::NumberComparison>& all, bool json) {
   Json numbers = Json::array();
-  for (const NumberComparison& c : all) {
+  for (const material::NumberComparison& c : all) {
     numbers.push_back({{"name", c.name},
                        {"unit", c.unit},
                        {"pixels", c.pixels},
@@ -87,9 +87,9 @@ void print_comparison(const std::vector<NumberComparison>& all, bool json) {
 
 // Two solves by all that a batch says of a session: the tested one is the new one.
 Result<int> compare_two_solves(const CompareArguments& a, const CommonArguments& common) {
-  const Result<batch::MapChange> change = compare_solves(a.truth, a.tested, common.threads);
+  const Result<library::MapChange> change = library::compare_solves(a.truth, a.tested, common.threads);
   if (!change) return change.error();
-  const std::vector<std::string> worse = batch::regressions(*change);
+  const std::vector<std::string> worse = library::regressions(*change);
   if (common.json) {
     Json document = object_of(*change);
     document["regressions"] = worse;
@@ -105,7 +105,7 @@ Result<int> compare_two_solves(const CompareArguments& a, const CommonArguments&
                     100 * change->unsolved.after));
   if (change->status_changed)
     print(fmt::format("  status: {:.3f} percent of the pixels changed", 100 * *change->status_changed));
-  const batch::WorstWindow& worst = change->worst;
+  const library::WorstWindow& worst = change->worst;
   print(fmt::format("  worst: {:.4g} degrees in {} x {} pixels at {}, {}", worst.mean_deg, worst.side,
                     worst.side, worst.x, worst.y));
   if (change->is_none()) print("  no pixel changed");
@@ -121,10 +121,11 @@ Result<int> compare(const CompareArguments& a, const CommonArguments& common) {
                  "of two folders all maps are compared, where both are solved", "leave these out"};
   }
   const auto kind = std::ranges::find(kKindNames, a.kind);
-  const Result<MapComparison> c = compare_maps(
+  const Result<material::MapComparison> c = material::compare_maps(
       a.tested, a.truth, a.mask,
-      kind == kKindNames.end() ? std::nullopt
-                               : std::optional(static_cast<ComparedKind>(kind - kKindNames.begin())));
+      kind == kKindNames.end()
+          ? std::nullopt
+          : std::optional(static_cast<material::ComparedKind>(kind - kKindNames.begin())));
   if (!c) return c.error();
   std::visit([&](const auto& compared) { print_comparison(compared, common.json); }, *c);
   return kDone;

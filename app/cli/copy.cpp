@@ -12,7 +12,7 @@
 namespace weft::app {
 namespace {
 
-Result<int> copy(const CopyRequest& arguments, const CommonArguments& common) {
+Result<int> copy(const capture::CopyRequest& arguments, const CommonArguments& common) {
   const Result<std::filesystem::path> copy = capture::copy_later(arguments.session, arguments.to);
   if (!copy) return copy.error();
   const auto one_disk = capture::warning_of_one_disk(arguments.session, *copy);
@@ -26,7 +26,7 @@ Result<int> copy(const CopyRequest& arguments, const CommonArguments& common) {
 }
 
 Run add_copy(Options& options) {
-  const auto a = std::make_shared<CopyRequest>();
+  const auto a = std::make_shared<capture::CopyRequest>();
   add_options(options, *a);
   return [a](const CommonArguments& common) { return copy(*a, common); };
 }

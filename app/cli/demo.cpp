@@ -45,9 +45,9 @@ struct Outcome {
   bool is_scanned = false;  ///< else rendered, where no virtual rig is installed
   double scan_seconds = 0;
   std::size_t frames = 0;
-  SolveReport solved;
-  NormalComparison normal;
-  AlbedoComparison albedo;
+  solve::SolveReport solved;
+  solve::NormalComparison normal;
+  material::AlbedoComparison albedo;
   std::uint64_t session_bytes = 0, map_bytes = 0;
 };
 
@@ -120,25 +120,25 @@ Result<Outcome> scan_and_solve(const DemoArguments& arguments, const simulator::
   outcome.session_bytes = *session_bytes;
 
   ProgressLine line(common.quiet);
-  Result<SolveReport> solved =
-      solve_session({session, {}, {}}, {}, {common.threads, stop_on_signal(), line.callback()});
+  Result<solve::SolveReport> solved =
+      solve::solve_session({session, {}, {}}, {}, {common.threads, stop_on_signal(), line.callback()});
   if (!solved) return std::move(solved).error();
   outcome.solved = std::move(*solved);
   const fs::path& maps = outcome.solved.folder;
   const Result<std::uint64_t> map_bytes = bytes_in(maps);
   if (!map_bytes) return map_bytes.error();
   outcome.map_bytes = *map_bytes;
-  const auto normal = compare_normals(maps / "normal.exr", session / "truth" / "normal.exr", {});
+  const auto normal = material::compare_normals(maps / "normal.exr", session / "truth" / "normal.exr", {});
   if (!normal) return normal.error();
   outcome.normal = *normal;
-  const auto albedo = compare_albedo(maps / "albedo.exr", session / "truth" / "albedo.exr", {});
+  const auto albedo = material::compare_albedo(maps / "albedo.exr", session / "truth" / "albedo.exr", {});
   if (!albedo) return albedo.error();
   outcome.albedo = *albedo;
   return outcome;
 }
 
 void print_table(const simulator::Scene& scene, const Outcome& o) {
-  const SolveSeconds& s = o.solved.seconds;
+  const solve::SolveSeconds& s = o.solved.seconds;
   print(fmt::format("{}, {} x {} pixels, {} frames", scene.fabric, scene.camera.width, scene.camera.height,
                     o.frames));
   print(fmt::format("  normal error    mean {:.3f}, median {:.3f}, 95 % under {:.3f} degrees",
@@ -156,7 +156,7 @@ void print_table(const simulator::Scene& scene, const Outcome& o) {
 }
 
 Json outcome_json(const Outcome& o) {
-  const SolveSeconds& s = o.solved.seconds;
+  const solve::SolveSeconds& s = o.solved.seconds;
   return {
       {"scanned", o.is_scanned},
       {"folder", o.solved.folder.string()},

@@ -19,29 +19,29 @@
 namespace weft::app {
 namespace {
 
-bool is_fault(const SetupFinding& finding) {
-  return finding.verdict == SetupFinding::Verdict::kFault;
+bool is_fault(const capture::SetupFinding& finding) {
+  return finding.verdict == capture::SetupFinding::Verdict::kFault;
 }
 
-void append(std::vector<SetupFinding>& all, std::vector<SetupFinding> more) {
+void append(std::vector<capture::SetupFinding>& all, std::vector<capture::SetupFinding> more) {
   all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-std::vector<SetupFinding> examine_devices(const capture::Rig& rig) {
-  return examine_rig(rig, {.board = [&]() -> Result<std::string> {
-                             const auto board = capture::open_board(rig);
-                             if (!board) return board.error();
-                             return words_of((*board)->facts());
-                           },
-                           .camera = [&]() -> Result<capture::CameraFacts> {
-                             auto opened = capture::open_camera(rig);
-                             if (!opened) return std::move(opened).error();
-                             return (*opened)->connect();
-                           }});
+std::vector<capture::SetupFinding> examine_devices(const capture::Rig& rig) {
+  return capture::examine_rig(rig, {.board = [&]() -> Result<std::string> {
+                                      const auto board = capture::open_board(rig);
+                                      if (!board) return board.error();
+                                      return words_of((*board)->facts());
+                                    },
+                                    .camera = [&]() -> Result<capture::CameraFacts> {
+                                      auto opened = capture::open_camera(rig);
+                                      if (!opened) return std::move(opened).error();
+                                      return (*opened)->connect();
+                                    }});
 }
 
 /// What the process that owns the rig says of it; its devices are its own.
-Result<SetupFinding> ask_owner(const capture::Rig& rig, const std::string& address) {
+Result<capture::SetupFinding> ask_owner(const capture::Rig& rig, const std::string& address) {
   const Result<RigClient> client = connect_to_owner(rig, address);
   if (!client) return client.error();
   const Result<Json> status = client->get("/api/v1/rig");
@@ -54,32 +54,33 @@ Result<SetupFinding> ask_owner(const capture::Rig& rig, const std::string& addre
   }
   const std::string why = status->at("why").get<std::string>();
   if (status->at("state") != "idle" && !why.empty()) says += ": " + why;
-  return SetupFinding{SetupFinding::Verdict::kFine, "daemon", says + "; board and camera are left alone", ""};
+  return capture::SetupFinding{capture::SetupFinding::Verdict::kFine, "daemon",
+                               says + "; board and camera are left alone", ""};
 }
 
-std::vector<SetupFinding> examine(const capture::Rig& rig) {
-  std::vector<SetupFinding> found;
+std::vector<capture::SetupFinding> examine(const capture::Rig& rig) {
+  std::vector<capture::SetupFinding> found;
   const Result<std::optional<std::string>> owner = address_of_owner(rig);
   if (!owner) {
-    found.push_back(fault_of("daemon", owner.error()));
+    found.push_back(capture::fault_of("daemon", owner.error()));
   } else if (*owner) {
-    const Result<SetupFinding> said = ask_owner(rig, **owner);
-    found.push_back(said ? *said : fault_of("daemon", said.error()));
+    const Result<capture::SetupFinding> said = ask_owner(rig, **owner);
+    found.push_back(said ? *said : capture::fault_of("daemon", said.error()));
   } else if (const Result<RigLock> lock = RigLock::take(rig); !lock) {
-    found.push_back(fault_of("rig", lock.error()));
+    found.push_back(capture::fault_of("rig", lock.error()));
   } else {
     found = examine_devices(rig);
   }
-  append(found, examine_folders(rig, kFrameBytes));
+  append(found, capture::examine_folders(rig, capture::kFrameBytes));
   return found;
 }
 
 Result<int> examine_and_print(const std::filesystem::path& rig_file, const CommonArguments& common) {
   const Result<capture::Rig> rig = capture::read_rig(find_rig(rig_file));
   if (!rig) return rig.error();
-  const std::vector<SetupFinding> found = examine(*rig);
+  const std::vector<capture::SetupFinding> found = examine(*rig);
   Json rows = Json::array();
-  for (const SetupFinding& f : found) {
+  for (const capture::SetupFinding& f : found) {
     rows.push_back(json_of(f));
     if (common.json) continue;
     print(fmt::format("{:8} {:12} {}", name_of(f.verdict), f.part, f.says));

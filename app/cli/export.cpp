@@ -15,17 +15,17 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
 #include "exchange/export/export.h"
+#include "exchange/export/export_price.h"
 #include "exchange/export/export_request.h"
 #include "exchange/export/preset_files.h"
-#include "exchange/export/export_price.h"
 
 namespace weft::app {
 namespace {
 
 Result<int> list_presets(const CommonArguments& common) {
   Json rows = Json::array();
-  for (const KnownPreset& known : known_presets()) {
-    const Result<exchange::Preset> preset = read_preset(known.name);
+  for (const exchange::KnownPreset& known : exchange::known_presets()) {
+    const Result<exchange::Preset> preset = exchange::read_preset(known.name);
     const std::string says = preset ? preset->says : preset.error().message();
     rows.push_back({{"name", known.name}, {"says", says}, {"file", known.file.string()}});
     if (!common.json)
@@ -37,7 +37,7 @@ Result<int> list_presets(const CommonArguments& common) {
 }
 
 Result<int> show_preset(const std::string& name) {
-  Result<std::string> text = preset_text(name);
+  Result<std::string> text = exchange::preset_text(name);
   if (!text) return std::move(text).error();
   if (!text->empty() && text->back() == '\n') text->pop_back();
   print(*text);
@@ -56,15 +56,15 @@ std::string lost_words(const exchange::Loss& lost) {
   }
   const exchange::DistanceLoss* seen = nullptr;
   for (const exchange::DistanceLoss& each : lost.by_distance) {
-    if (each.level <= kToldDistance) seen = &each;
+    if (each.level <= exchange::kToldDistance) seen = &each;
   }
   if (seen != nullptr)
     words += fmt::format("; roughness {:.2g} off {} times as far", seen->mean_abs, 1 << seen->level);
   return words;
 }
 
-void print_report(const ExportReport& report) {
-  const ExportFacts& facts = report.facts;
+void print_report(const exchange::ExportReport& report) {
+  const exchange::ExportFacts& facts = report.facts;
   print(report.folder.string());
   if (report.was_there) print("  is there already: same maps, same preset, same options");
   const std::string size = facts.size_mm.empty()
@@ -73,25 +73,25 @@ void print_report(const ExportReport& report) {
   print(fmt::format("  {} x {} pixels, {}, normals {}, roughness as {}", facts.size.width, facts.size.height,
                     size, facts.normal, facts.roughness));
   for (const std::string& line : report.source) print("  " + line);
-  for (const ExportedTexture& file : facts.files) {
+  for (const exchange::ExportedTexture& file : facts.files) {
     print(fmt::format("  {}: {}, {:.2f} MB{}", file.file, file.encoding,
                       static_cast<double>(file.bytes) * 1e-6, lost_words(file.lost)));
   }
-  for (const ExportedDocument& document : facts.documents) {
+  for (const exchange::ExportedDocument& document : facts.documents) {
     print(fmt::format("  {}: {:.2f} MB", document.name, static_cast<double>(document.bytes) * 1e-6));
     for (const std::string& left_out : document.left_out) print("    " + left_out);
   }
   for (const std::string& text : facts.notes) print("  " + text);
 }
 
-Result<int> run_export(const ExportRequest& a, const CommonArguments& common) {
-  const Result<std::vector<ExportReport>> reports = [&] {
+Result<int> run_export(const exchange::ExportRequest& a, const CommonArguments& common) {
+  const Result<std::vector<exchange::ExportReport>> reports = [&] {
     ProgressLine line(common.quiet);
-    return export_maps(a.options, {common.threads, stop_on_signal(), line.callback()});
+    return exchange::export_maps(a.options, {common.threads, stop_on_signal(), line.callback()});
   }();
   if (!reports) return reports.error();
   Json exports = Json::array();
-  for (const ExportReport& report : *reports) {
+  for (const exchange::ExportReport& report : *reports) {
     if (!common.json) print_report(report);
     Json json = {
         {"folder", report.folder.string()}, {"was_there", report.was_there}, {"seconds", report.seconds}};
@@ -103,9 +103,9 @@ Result<int> run_export(const ExportRequest& a, const CommonArguments& common) {
   return kDone;
 }
 
-void print_prices(const std::vector<ExportPrice>& prices) {
+void print_prices(const std::vector<exchange::ExportPrice>& prices) {
   print(fmt::format("{:28}  {:15}  {:>9}  {:>8}  {}", "file", "stored as", "MB", "seconds", "lost"));
-  for (const ExportPrice& price : prices) {
+  for (const exchange::ExportPrice& price : prices) {
     const std::string name = price.preset.empty() ? price.file : price.preset + ": " + price.file;
     std::string lost = lost_words(price.loss);
     if (lost.starts_with("; ")) lost.erase(0, 2);
@@ -115,8 +115,8 @@ void print_prices(const std::vector<ExportPrice>& prices) {
   print("bytes and seconds of the whole cloth, by one thread, from a piece of its middle");
 }
 
-Result<int> explain_export(const ExportRequest& a, const CommonArguments& common) {
-  const Result<std::vector<ExportPrice>> prices =
+Result<int> explain_export(const exchange::ExportRequest& a, const CommonArguments& common) {
+  const Result<std::vector<exchange::ExportPrice>> prices =
       price_exports(a.options, {common.threads, stop_on_signal(), [](std::string_view, double) {}});
   if (!prices) return prices.error();
   if (common.json) {
@@ -132,7 +132,7 @@ Error missing(const char* option, const char* remedy) {
 }
 
 Run add_export(Options& options) {
-  const auto a = std::make_shared<ExportRequest>();
+  const auto a = std::make_shared<exchange::ExportRequest>();
   add_options(options, *a);
   return [a](const CommonArguments& common) -> Result<int> {
     if (a->lists) return list_presets(common);

@@ -10,21 +10,21 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
-#include "material/run/maps_request.h"
 #include "material/run/maps_price.h"
+#include "material/run/maps_request.h"
 #include "material/run/session_sets.h"
 
 namespace weft::app {
 namespace {
 
-void print_words(const MapsReport& report) {
-  const MapSetFacts& facts = report.facts;
+void print_words(const material::MapsReport& report) {
+  const material::MapSetFacts& facts = report.facts;
   print(report.folder.string());
   if (report.was_there) print("  is there already: same solve, same recipe, same options");
   print(fmt::format("  {} x {} pixels of {:.5g} mm{}", facts.size.width, facts.size.height,
                     facts.mm_per_pixel, facts.is_tile ? ", a tile" : ""));
-  for (const std::string& line : source_lines(facts.source)) print("  " + line);
-  for (const MapFacts& map : facts.maps) {
+  for (const std::string& line : material::source_lines(facts.source)) print("  " + line);
+  for (const material::MapFacts& map : facts.maps) {
     const std::string unit = map.unit.empty() ? "" : " " + map.unit;
     if (map.constant) {
       print(fmt::format("  {}: {:.4g}{}, {}", map.name, *map.constant, unit, map.why));
@@ -38,9 +38,9 @@ void print_words(const MapsReport& report) {
   print(fmt::format("  look at {}", (report.folder / "report.html").string()));
 }
 
-void print_prices(const MapPrices& prices) {
+void print_prices(const material::MapPrices& prices) {
   print(fmt::format("{:10}  {:14}  {:>8}  {:>9}", "map", "setting", "seconds", "rms error"));
-  for (const MapPrice& price : prices.rows) {
+  for (const material::MapPrice& price : prices.rows) {
     print(fmt::format("{:10}  {:14}  {:>8.2f}  {:>9.5f} {}{}", price.map, price.setting, price.seconds,
                       price.error, price.unit,
                       price.is_chosen    ? ", chosen"
@@ -51,10 +51,11 @@ void print_prices(const MapPrices& prices) {
 }
 
 // What each setting costs and is off by on a piece of this cloth, before any of it is spent.
-Result<int> explain(MapsRequest& arguments, const CommonArguments& common) {
-  const Result<MapPrices> prices = [&] {
+Result<int> explain(material::MapsRequest& arguments, const CommonArguments& common) {
+  const Result<material::MapPrices> prices = [&] {
     ProgressLine line(common.quiet);
-    return price_maps(arguments.maps, arguments.aims, {common.threads, stop_on_signal(), line.callback()});
+    return material::price_maps(arguments.maps, arguments.aims,
+                                {common.threads, stop_on_signal(), line.callback()});
   }();
   if (!prices) return prices.error();
   arguments.maps.derive.directions = prices->directions;
@@ -67,14 +68,14 @@ Result<int> explain(MapsRequest& arguments, const CommonArguments& common) {
   return kDone;
 }
 
-Result<int> make(const MapsRequest& arguments, const CommonArguments& common) {
-  Result<Recipe> recipe = arguments.asked_recipe();
+Result<int> make(const material::MapsRequest& arguments, const CommonArguments& common) {
+  Result<material::Recipe> recipe = arguments.asked_recipe();
   if (!recipe) return std::move(recipe).error();
-  MapsOptions options = arguments.maps;
+  material::MapsOptions options = arguments.maps;
   options.recipe = std::move(*recipe);
-  const Result<MapsReport> report = [&] {
+  const Result<material::MapsReport> report = [&] {
     ProgressLine line(common.quiet);
-    return make_maps(options, {common.threads, stop_on_signal(), line.callback()});
+    return material::make_maps(options, {common.threads, stop_on_signal(), line.callback()});
   }();
   if (!report) return report.error();
   if (common.json) {
@@ -87,11 +88,11 @@ Result<int> make(const MapsRequest& arguments, const CommonArguments& common) {
 }
 
 Run add_maps(Options& options) {
-  const auto a = std::make_shared<MapsRequest>();
+  const auto a = std::make_shared<material::MapsRequest>();
   add_options(options, *a);
   return [a](const CommonArguments& common) {
     if (a->maps.maps.empty())
-      for (const DerivedMap& map : derived_maps()) a->maps.maps.emplace_back(map.name);
+      for (const material::DerivedMap& map : material::derived_maps()) a->maps.maps.emplace_back(map.name);
     if (a->only_explains || a->aims.to || a->aims.within_s) {
       const Result<int> explained = explain(*a, common);
       if (!explained || a->only_explains) return explained;
@@ -101,7 +102,7 @@ Run add_maps(Options& options) {
 }
 
 Run add_finish(Options& options) {
-  const auto a = std::make_shared<FinishRequest>();
+  const auto a = std::make_shared<material::FinishRequest>();
   add_options(options, *a);
   return [a](const CommonArguments& common) { return make(*a, common); };
 }

@@ -24,14 +24,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct MaterialArguments : BuildRequest {
-  NewMaterial made;
+struct MaterialArguments : material::BuildRequest {
+  material::NewMaterial made;
 };
 
-Result<std::vector<MaterialPlace>> places_of(const MaterialArguments& a) {
-  std::vector<MaterialPlace> places;
+Result<std::vector<material::MaterialPlace>> places_of(const MaterialArguments& a) {
+  std::vector<material::MaterialPlace> places;
   for (const std::string& file : a.files) {
-    Result<MaterialPlace> place = find_material(file, {});
+    Result<material::MaterialPlace> place = material::find_material(file, {});
     if (!place) return std::move(place).error();
     places.push_back(std::move(*place));
   }
@@ -46,15 +46,16 @@ std::string shown(const Json& value) {
 // Which solves a material is of, and what is stale of them.
 void print_scans(const Json& scans) {
   for (const Json& scan : scans) {
-    for (const std::string& line : source_lines(source_in(scan)))
+    for (const std::string& line : material::source_lines(material::source_in(scan)))
       print(fmt::format("  {}: {}", scan.value("session", "scan"), line));
   }
 }
 
 Result<int> resolve(const MaterialArguments& a, const CommonArguments& common) {
-  const Result<std::vector<MaterialPlace>> places = places_of(a);
+  const Result<std::vector<material::MaterialPlace>> places = places_of(a);
   if (!places) return places.error();
-  const Result<ResolvedMaterial> material = resolve_material(places->front(), materials_on_disk());
+  const Result<material::ResolvedMaterial> material =
+      material::resolve_material(places->front(), material::materials_on_disk());
   if (!material) return material.error();
   const Json document = json_of(*material);
   if (common.json) {
@@ -69,9 +70,9 @@ Result<int> resolve(const MaterialArguments& a, const CommonArguments& common) {
   return kDone;
 }
 
-Json json_of_build(const BuildReport& report) {
+Json json_of_build(const material::BuildReport& report) {
   Json materials = Json::array();
-  for (const BuiltMaterial& each : report.materials) {
+  for (const material::BuiltMaterial& each : report.materials) {
     materials.push_back({{"material", each.place.name},
                          {"name", each.document["name"]},
                          {"id", each.id},
@@ -87,8 +88,8 @@ Json json_of_build(const BuildReport& report) {
           {"materials", std::move(materials)}};
 }
 
-void print_build(const BuildReport& report) {
-  for (const BuiltMaterial& each : report.materials) {
+void print_build(const material::BuildReport& report) {
+  for (const material::BuiltMaterial& each : report.materials) {
     const Json& d = each.document;
     print(each.folder.string());
     if (each.was_there) print("  is there already: nothing that it depends on has changed");
@@ -105,18 +106,18 @@ void print_build(const BuildReport& report) {
   print(fmt::format("{} built, {} kept", report.built, report.kept));
 }
 
-Result<BuildOptions> build_options(const MaterialArguments& a) {
-  Result<std::vector<MaterialPlace>> places = places_of(a);
+Result<material::BuildOptions> build_options(const MaterialArguments& a) {
+  Result<std::vector<material::MaterialPlace>> places = places_of(a);
   if (!places) return std::move(places).error();
-  return BuildOptions{std::move(*places), a.output, a.compose};
+  return material::BuildOptions{std::move(*places), a.output, a.compose};
 }
 
 Result<int> build(const MaterialArguments& a, const CommonArguments& common) {
-  const Result<BuildOptions> options = build_options(a);
+  const Result<material::BuildOptions> options = build_options(a);
   if (!options) return options.error();
-  const Result<BuildReport> report = [&] {
+  const Result<material::BuildReport> report = [&] {
     ProgressLine line(common.quiet);
-    return build_materials(*options, {common.threads, stop_on_signal(), line.callback()});
+    return material::build_materials(*options, {common.threads, stop_on_signal(), line.callback()});
   }();
   if (!report) return report.error();
   if (common.json) {
@@ -128,9 +129,9 @@ Result<int> build(const MaterialArguments& a, const CommonArguments& common) {
 }
 
 Result<int> watch(const MaterialArguments& a, const CommonArguments& common) {
-  const Result<BuildOptions> options = build_options(a);
+  const Result<material::BuildOptions> options = build_options(a);
   if (!options) return options.error();
-  const auto tell = [&](const Result<BuildReport>& report) {
+  const auto tell = [&](const Result<material::BuildReport>& report) {
     if (!report) return complain(report.error());
     if (common.json) {
       print(json_of_build(*report).dump());
@@ -139,28 +140,29 @@ Result<int> watch(const MaterialArguments& a, const CommonArguments& common) {
     }
     static_cast<void>(flush_output());
   };
-  watch_materials({*options}, {.threads = common.threads, .stop = stop_on_signal()}, tell);
+  material::watch_materials({*options}, {.threads = common.threads, .stop = stop_on_signal()}, tell);
   return kDone;
 }
 
 Result<int> graph(const MaterialArguments& a, const CommonArguments& common) {
-  const Result<std::vector<MaterialPlace>> places = places_of(a);
+  const Result<std::vector<material::MaterialPlace>> places = places_of(a);
   if (!places) return places.error();
-  DigestCache digests({});
-  const Result<MaterialTree> tree = plan_materials(*places, materials_on_disk(), digests);
+  material::DigestCache digests({});
+  const Result<material::MaterialTree> tree =
+      material::plan_materials(*places, material::materials_on_disk(), digests);
   if (!tree) return tree.error();
   if (common.json) {
-    print_json({{"graph", graph_of(*tree)}});
+    print_json({{"graph", material::graph_of(*tree)}});
   } else {
-    print(graph_of(*tree));
+    print(material::graph_of(*tree));
   }
   return kDone;
 }
 
 Result<int> list(const CommonArguments& common) {
   Json materials = Json::array();
-  for (const MaterialPlace& place : list_materials()) {
-    const Result<MaterialFile> file = read_material(place);
+  for (const material::MaterialPlace& place : material::list_materials()) {
+    const Result<material::MaterialFile> file = material::read_material(place);
     const bool has_notes = file && file->top.contains("notes");
     materials.push_back({{"name", place.name},
                          {"file", place.file.string()},
@@ -179,9 +181,9 @@ Result<int> list(const CommonArguments& common) {
 }
 
 Result<int> show(const MaterialArguments& a, const CommonArguments& common) {
-  const Result<std::vector<MaterialPlace>> places = places_of(a);
+  const Result<std::vector<material::MaterialPlace>> places = places_of(a);
   if (!places) return places.error();
-  const Result<std::string> text = material_text(places->front());
+  const Result<std::string> text = material::material_text(places->front());
   if (!text) return text.error();
   if (common.json) {
     print_json({{"name", places->front().name}, {"text", *text}});
@@ -192,13 +194,13 @@ Result<int> show(const MaterialArguments& a, const CommonArguments& common) {
 }
 
 Result<int> make_new(const MaterialArguments& a, const CommonArguments& common) {
-  const Result<void> made = write_new_material(a.made);
+  const Result<void> made = material::write_new_material(a.made);
   if (!made) return made.error();
   if (common.json) {
     print_json({{"file", fs::absolute(a.made.file).string()}});
   } else {
     print(a.made.file.string());
-    const Result<MapSet> set = open_map_set(a.made.scan, true);
+    const Result<material::MapSet> set = material::open_map_set(a.made.scan, true);
     if (Json source = set ? source_of(*set) : Json(); !source.is_null())
       print_scans(Json::array({std::move(source)}));
   }
@@ -230,13 +232,13 @@ Run add_resolve(Options& options) {
 
 Run add_build(Options& options) {
   const auto a = std::make_shared<MaterialArguments>();
-  add_options(options, static_cast<BuildRequest&>(*a));
+  add_options(options, static_cast<material::BuildRequest&>(*a));
   return [a](const CommonArguments& common) { return build(*a, common); };
 }
 
 Run add_watch(Options& options) {
   const auto a = std::make_shared<MaterialArguments>();
-  add_options(options, static_cast<BuildRequest&>(*a));
+  add_options(options, static_cast<material::BuildRequest&>(*a));
   return [a](const CommonArguments& common) { return watch(*a, common); };
 }
 

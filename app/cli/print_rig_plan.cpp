@@ -21,14 +21,14 @@ std::string cell_of(double value, const char* pattern) {
   return std::isfinite(value) ? fmt::format(fmt::runtime(pattern), value) : "-";
 }
 
-void print_rig_plan(const RigPlan& plan) {
+void print_rig_plan(const calibration::RigPlan& plan) {
   const solver::ForeseenCloth& cloth = plan.cloth.cloth;
   const bool is_pile = cloth.lobe.family == solver::LobeFamily::kCloth;
   print(fmt::format("{} under the {} LEDs of {}; albedo {:g}, mean slope {:g} degrees; standard deviations:",
                     plan.cloth.name, plan.planned.leds.size(), plan.rig, cloth.albedo, cloth.relief_deg));
   print(fmt::format("{:>7}  {:>7}  {:>7}  {:10}  {:>5}  {:>7}  {:>7}", "normal", "alpha",
                     is_pile ? "sheen" : "f0", "observable", "shots", "seconds", "won"));
-  for (const RigPlanRow& row : plan.rows) {
+  for (const calibration::RigPlanRow& row : plan.rows) {
     print(fmt::format("{:>6}°  {:>7}  {:>7}  {:10}  {:>+5}  {:>+7.3g}  {:>6}°  {}",
                       cell_of(row.sigma.normal_deg, "{:.3f}"), cell_of(row.sigma.alpha, "{:.4f}"),
                       cell_of(row.sigma.f0, "{:.4f}"), row.sigma.is_observable ? "yes" : "no",
@@ -38,23 +38,23 @@ void print_rig_plan(const RigPlan& plan) {
   for (const std::string& each : plan.notes) print("  " + each);
 }
 
-Result<int> run_rig_plan(const RigPlanRequest& arguments, const CommonArguments& common) {
+Result<int> run_rig_plan(const calibration::RigPlanRequest& arguments, const CommonArguments& common) {
   if (!arguments.picture.empty() && arguments.picture.extension() != ".svg") {
     return Error{ErrorKind::kUsage, "a plan is drawn as SVG", arguments.picture.string(),
                  "its name does not end in .svg", "name it plan.svg"};
   }
-  const Result<NamedCloth> cloth = arguments.asked_cloth();
+  const Result<calibration::NamedCloth> cloth = arguments.asked_cloth();
   if (!cloth) return cloth.error();
-  RigPlanOptions options = arguments.plan;
+  calibration::RigPlanOptions options = arguments.plan;
   options.rig = find_rig(options.rig);
   options.cloth = *cloth;
-  const Result<RigPlan> plan = [&] {
+  const Result<calibration::RigPlan> plan = [&] {
     ProgressLine line(common.quiet);
-    return plan_rig(options, {common.threads, stop_on_signal(), line.callback()});
+    return calibration::plan_rig(options, {common.threads, stop_on_signal(), line.callback()});
   }();
   if (!plan) return plan.error();
   if (!arguments.picture.empty()) {
-    if (Result<void> drawn = write_file(arguments.picture, picture_of(*plan)); !drawn)
+    if (Result<void> drawn = write_file(arguments.picture, calibration::picture_of(*plan)); !drawn)
       return std::move(drawn).error();
   }
   if (common.json) {
@@ -68,7 +68,7 @@ Result<int> run_rig_plan(const RigPlanRequest& arguments, const CommonArguments&
 }  // namespace
 
 Run add_rig_plan(Options& options) {
-  const auto a = std::make_shared<RigPlanRequest>();
+  const auto a = std::make_shared<calibration::RigPlanRequest>();
   add_options(options, *a);
   return [a](const CommonArguments& common) { return run_rig_plan(*a, common); };
 }

@@ -14,19 +14,19 @@
 namespace weft::app {
 namespace {
 
-Result<int> rectify(const RectifyOptions& options, const CommonArguments& common) {
-  const Result<RectifyReport> report = [&] {
+Result<int> rectify(const material::RectifyOptions& options, const CommonArguments& common) {
+  const Result<material::RectifyReport> report = [&] {
     ProgressLine line(common.quiet);
-    return rectify_session(options, {common.threads, stop_on_signal(), line.callback()});
+    return material::rectify_session(options, {common.threads, stop_on_signal(), line.callback()});
   }();
   if (!report) return report.error();
   if (common.json) {
     print_product(json_of(report->facts), report->folder, report->was_there);
     return kDone;
   }
-  const RectifyFacts& facts = report->facts;
+  const material::RectifyFacts& facts = report->facts;
   print(report->folder.string());
-  for (const std::string& line : source_lines(facts.source)) print("  " + line);
+  for (const std::string& line : material::source_lines(facts.source)) print("  " + line);
   print(report->was_there ? "  is there already: same solve, same options"
                           : fmt::format("  {} x {} pixels of {:.5g} mm", facts.size.width, facts.size.height,
                                         facts.mm_per_pixel));
@@ -34,7 +34,7 @@ Result<int> rectify(const RectifyOptions& options, const CommonArguments& common
 }
 
 Run add_rectify(Options& options) {
-  const auto a = std::make_shared<RectifyOptions>();
+  const auto a = std::make_shared<material::RectifyOptions>();
   add_options(options, *a);
   return [a](const CommonArguments& common) { return rectify(*a, common); };
 }

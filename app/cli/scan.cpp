@@ -169,10 +169,10 @@ fs::path solve_preview(const fs::path& session, const CommonArguments& common, J
     return {};
   }
   ProgressLine line(common.quiet);
-  SolveOptions options;
+  solve::SolveOptions options;
   options.method = "preview";
-  const Result<SolveReport> solved =
-      solve_session({session, {}, {}}, options, {common.threads, stop_on_signal(), line.callback()});
+  const Result<solve::SolveReport> solved =
+      solve::solve_session({session, {}, {}}, options, {common.threads, stop_on_signal(), line.callback()});
   if (solved) return solved->folder / "sheet.png";
   warnings.push_back("there is no preview: " + solved.error().message());
   return {};

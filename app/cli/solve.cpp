@@ -31,44 +31,44 @@
 namespace weft::app {
 namespace {
 
-Result<Ladder> price(const SolveRequest& a, const CommonArguments& common) {
+Result<solve::Ladder> price(const solve::SolveRequest& a, const CommonArguments& common) {
   ProgressLine line(common.quiet);
   const JobContext context = {common.threads, stop_on_signal(), line.callback()};
-  const PriceOptions wanted = {.crops = a.crops};
-  return a.session.folder.empty() ? explain_photos(a.photos, a.options, wanted, context)
-                                  : explain_session(a.session, a.options, wanted, context);
+  const solve::PriceOptions wanted = {.crops = a.crops};
+  return a.session.folder.empty() ? solve::explain_photos(a.photos, a.options, wanted, context)
+                                  : solve::explain_session(a.session, a.options, wanted, context);
 }
 
-void print_words(const Ladder& ladder, std::optional<std::size_t> chosen) {
+void print_words(const solve::Ladder& ladder, std::optional<std::size_t> chosen) {
   print(
       "level       degrees        of  seconds     read  prepare    solve    write pictures   report     "
       "sync");
   for (std::size_t i = 0; i < ladder.levels.size(); ++i) {
-    const LevelPrice& level = ladder.levels[i];
-    const LevelSeconds& s = level.seconds;
+    const solve::LevelPrice& level = ladder.levels[i];
+    const solve::LevelSeconds& s = level.seconds;
     print(fmt::format(
         "{:<10} {:>8} {:>9} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g}  {}",
         level.name(), level.error.solved > 0 ? fmt::format("{:.3g}", level.error.total_deg) : "-",
-        share_in_words(level.error.solved), s.total(), s.read, s.prepare, s.solve, s.write, s.pictures,
+        solve::share_in_words(level.error.solved), s.total(), s.read, s.prepare, s.solve, s.write, s.pictures,
         s.report, s.sync, chosen == i ? "<- chosen" : ""));
     if (!level.note.empty()) print("           " + level.note);
   }
   print(
       "degrees hold for that share of the cloth; so that solve.json keeps what is foretold here, solve with");
-  for (const LevelPrice& level : ladder.levels) {
-    const SolvePrice price = price_of(level);
+  for (const solve::LevelPrice& level : ladder.levels) {
+    const SolvePrice price = solve::price_of(level);
     print(fmt::format("  --quality {} --foretold {:.4g},{:.4g},{:.4g}", level.name(), price.seconds,
                       price.mean_deg, price.solved));
   }
 }
 
 /// Prints what each level would give and cost, and which one the wishes choose.
-Result<int> run_explain(const SolveRequest& arguments, const CommonArguments& common) {
-  const Result<Ladder> ladder = price(arguments, common);
+Result<int> run_explain(const solve::SolveRequest& arguments, const CommonArguments& common) {
+  const Result<solve::Ladder> ladder = price(arguments, common);
   if (!ladder) return ladder.error();
   std::optional<std::size_t> chosen;
   if (arguments.wish.is_one()) {
-    const Result<std::size_t> level = choose_level(*ladder, arguments.wish);
+    const Result<std::size_t> level = solve::choose_level(*ladder, arguments.wish);
     if (!level) return level.error();
     chosen = *level;
   }
@@ -81,31 +81,32 @@ Result<int> run_explain(const SolveRequest& arguments, const CommonArguments& co
 }
 
 /// The level that the wishes choose, with a note of what is expected of it.
-Result<LevelPrice> chosen_level(const SolveRequest& arguments, const CommonArguments& common) {
-  const Result<Ladder> ladder = price(arguments, common);
+Result<solve::LevelPrice> chosen_level(const solve::SolveRequest& arguments, const CommonArguments& common) {
+  const Result<solve::Ladder> ladder = price(arguments, common);
   if (!ladder) return ladder.error();
-  const Result<std::size_t> chosen = choose_level(*ladder, arguments.wish);
+  const Result<std::size_t> chosen = solve::choose_level(*ladder, arguments.wish);
   if (!chosen) return chosen.error();
-  const LevelPrice& level = ladder->levels[*chosen];
+  const solve::LevelPrice& level = ladder->levels[*chosen];
   if (!common.quiet) {
     note(fmt::format("chose {}: {} and {:.3g} s expected", level.name(),
-                     error_in_words(level.error.total_deg, level.error.solved), level.seconds.total()));
+                     solve::error_in_words(level.error.total_deg, level.error.solved),
+                     level.seconds.total()));
   }
   return level;
 }
 
 /// Solves a session by every level and draws them side by side.
-Result<int> run_ladder(const SolveRequest& arguments, const CommonArguments& common) {
-  const Result<std::vector<LadderStep>> steps = [&] {
+Result<int> run_ladder(const solve::SolveRequest& arguments, const CommonArguments& common) {
+  const Result<std::vector<solve::LadderStep>> steps = [&] {
     ProgressLine line(common.quiet);
     const JobContext context = {common.threads, stop_on_signal(), line.callback()};
-    return draw_ladder(arguments.session, arguments.options, arguments.ladder, context);
+    return solve::draw_ladder(arguments.session, arguments.options, arguments.ladder, context);
   }();
   if (!steps) return steps.error();
   const std::string picture = std::filesystem::absolute(arguments.ladder).lexically_normal().string();
   if (common.json) {
     Json levels = Json::array();
-    for (const LadderStep& step : *steps) {
+    for (const solve::LadderStep& step : *steps) {
       levels.push_back({{"quality", step.quality},
                         {"folder", step.folder.string()},
                         {"error_deg", step.error_deg ? Json(*step.error_deg) : Json()}});
@@ -114,7 +115,7 @@ Result<int> run_ladder(const SolveRequest& arguments, const CommonArguments& com
     return kDone;
   }
   print(picture);
-  for (const LadderStep& step : *steps) {
+  for (const solve::LadderStep& step : *steps) {
     print(fmt::format("  {:<10} {}", step.quality,
                       step.error_deg ? fmt::format("{:.3f} degrees off in the crop", *step.error_deg)
                                      : step.folder.string()));
@@ -130,7 +131,7 @@ std::string status_words(const StatusCounts& status) {
   return words.empty() ? " none" : words;
 }
 
-Json json_of(const SolveReport& report) {
+Json json_of(const solve::SolveReport& report) {
   const SolveFacts& facts = report.facts;
   return {{"normal", (report.folder / "normal.exr").string()},
           {"albedo", (report.folder / "albedo.exr").string()},
@@ -158,14 +159,14 @@ Json json_of(const SolveReport& report) {
 
 // What was got and paid, beside what was said before.
 void print_price(const SolvePrice& taken, const std::optional<SolvePrice>& foretold) {
-  print(fmt::format("  expected: {}", error_in_words(taken.mean_deg, taken.solved)));
+  print(fmt::format("  expected: {}", solve::error_in_words(taken.mean_deg, taken.solved)));
   if (!foretold) return;
   print(fmt::format("  foretold {} in {:.3g} s, {:.2f} times the {:.3g} s that it took",
-                    error_in_words(foretold->mean_deg, foretold->solved), foretold->seconds,
+                    solve::error_in_words(foretold->mean_deg, foretold->solved), foretold->seconds,
                     foretold->seconds / taken.seconds, taken.seconds));
 }
 
-void print_words(const SolveReport& report) {
+void print_words(const solve::SolveReport& report) {
   const SolveFacts& facts = report.facts;
   if (report.was_there) {
     print(fmt::format("{} is there already: same inputs, same options", report.folder.string()));
@@ -177,8 +178,8 @@ void print_words(const SolveReport& report) {
   if (facts.taken) print_price(*facts.taken, facts.foretold);
   print("  pixels by status:" + status_words(facts.status));
   if (facts.reflectance && !facts.reflectance->lobe.family.empty())
-    print("  gloss: " + reflectance_words(*facts.reflectance));
-  const SolveSeconds& s = report.seconds;
+    print("  gloss: " + solve::reflectance_words(*facts.reflectance));
+  const solve::SolveSeconds& s = report.seconds;
   print(fmt::format(
       "  {:.2f} s: read {:.2f}, prepare {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, report {:.2f}, "
       "sync {:.2f}; "
@@ -188,11 +189,11 @@ void print_words(const SolveReport& report) {
 }
 
 // Says which other solve a session goes on making its maps of, and how this one is chosen.
-void print_other_current(const SolveReport& report, const std::filesystem::path& folder) {
+void print_other_current(const solve::SolveReport& report, const std::filesystem::path& folder) {
   const Result<Session> session = read_session(folder);
   if (!session) return;
-  const library::SessionSolves solves = library::solves_of(*session);
-  const library::ChoosableSolve* const current = solves.current_one();
+  const solve::SessionSolves solves = solve::solves_of(*session);
+  const solve::ChoosableSolve* const current = solves.current_one();
   const bool is_among = solves.find(report.facts.id) != nullptr;
   if (current == nullptr || !is_among || current->id == report.facts.id) return;
   print(fmt::format("  maps are made of {}{}; to choose this one: weft library tag {} --set current_solve={}",
@@ -201,7 +202,7 @@ void print_other_current(const SolveReport& report, const std::filesystem::path&
 }
 
 void print_check(const SolveFacts& facts) {
-  print(facts.check ? left_out_words(*facts.check) : "  no light could be left out and predicted");
+  print(facts.check ? solve::left_out_words(*facts.check) : "  no light could be left out and predicted");
 }
 
 void print_warnings(const std::vector<Verdict>& warnings) {
@@ -212,24 +213,25 @@ void print_warnings(const std::vector<Verdict>& warnings) {
 
 /// Whether the rig that this machine has is known to have moved before it scanned the session: its last check
 /// did not pass, and none did since the session.
-Result<void> check_moved(SolveRequest& arguments) {
+Result<void> check_moved(solve::SolveRequest& arguments) {
   const Result<Session> session = read_session(arguments.session.folder);
   if (!session || session->shots.empty() || session->document.contains("accepted_moved")) return {};
   const Result<capture::Rig> rig = capture::read_rig(find_rig({}));
   if (!rig || rig->scan.calibration.empty() || rig->name != session->rig) return {};
-  const std::optional<LastCheck> check = last_check_of(rig->scan.calibration, session->calibration_id);
+  const std::optional<calibration::LastCheck> check =
+      calibration::last_check_of(rig->scan.calibration, session->calibration_id);
   if (!check || check->passed || session->shots.front().time <= check->passed_last) return {};
   if (arguments.accept_moved.empty()) {
-    return moved_since(
+    return calibration::moved_since(
         *check,
         "solve by a newer calibration (--calibration), or give a reason to solve all the same: "
         "--accept-moved WHY");
   }
-  arguments.session.accepted_moved = accepted_moved(*check, arguments.accept_moved);
+  arguments.session.accepted_moved = calibration::accepted_moved(*check, arguments.accept_moved);
   return {};
 }
 
-Result<int> solve(SolveRequest& arguments, const CommonArguments& common) {
+Result<int> solve(solve::SolveRequest& arguments, const CommonArguments& common) {
   if (Result<void> fits = check_fields(arguments); !fits) return std::move(fits).error();
   const bool is_session = !arguments.session.folder.empty();
   if (is_session && arguments.session.calibration.empty()) {
@@ -237,20 +239,20 @@ Result<int> solve(SolveRequest& arguments, const CommonArguments& common) {
   }
   if (!arguments.ladder.empty()) return run_ladder(arguments, common);
   if (arguments.explain) return run_explain(arguments, common);
-  SolveOptions options = arguments.options;
+  solve::SolveOptions options = arguments.options;
   if (const std::vector<double>& f = arguments.foretold; !f.empty())
     options.foretold = SolvePrice{f[0], f[1], f[2], {}};
   if (arguments.wish.is_one()) {
-    const Result<LevelPrice> level = chosen_level(arguments, common);
+    const Result<solve::LevelPrice> level = chosen_level(arguments, common);
     if (!level) return level.error();
     options.method = level->name();
-    options.foretold = price_of(*level);
+    options.foretold = solve::price_of(*level);
   }
-  Result<SolveReport> report = [&] {
+  Result<solve::SolveReport> report = [&] {
     ProgressLine line(common.quiet);
     const JobContext context = {common.threads, stop_on_signal(), line.callback()};
-    return is_session ? solve_session(arguments.session, options, context)
-                      : solve_photos(arguments.photos, options, context);
+    return is_session ? solve::solve_session(arguments.session, options, context)
+                      : solve::solve_photos(arguments.photos, options, context);
   }();
   if (!report) return std::move(report).error();
   if (report->transfer && !common.quiet) {
@@ -273,7 +275,7 @@ Result<int> solve(SolveRequest& arguments, const CommonArguments& common) {
 }
 
 Run add_solve(Options& options) {
-  const auto a = std::make_shared<SolveRequest>();
+  const auto a = std::make_shared<solve::SolveRequest>();
   add_options(options, *a);
   return [a](const CommonArguments& common) {
     a->photos.lights = a->session.leds;

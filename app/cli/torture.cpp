@@ -42,10 +42,10 @@ Result<int> torture(const fs::path& session, const CommonArguments& common) {
     if (Result<void> ok = simulate(session, common.threads, stop); !ok) return std::move(ok).error();
   }
   ProgressLine line(common.quiet);
-  SolveOptions options;
+  solve::SolveOptions options;
   options.condition = true;
-  const Result<SolveReport> solved =
-      solve_session({session, {}, {}}, options, {common.threads, stop, line.callback()});
+  const Result<solve::SolveReport> solved =
+      solve::solve_session({session, {}, {}}, options, {common.threads, stop, line.callback()});
   if (!solved) return solved.error();
   if (common.json) {
     print_json({{"session", session.stem().string()}, {"id", solved->facts.id}});
@@ -56,7 +56,7 @@ Result<int> torture(const fs::path& session, const CommonArguments& common) {
 }
 
 Run add_torture(Options& options) {
-  const auto a = std::make_shared<TortureRequest>();
+  const auto a = std::make_shared<simulator::TortureRequest>();
   add_options(options, *a);
   return [a](const CommonArguments& common) { return torture(a->session, common); };
 }

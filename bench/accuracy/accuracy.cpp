@@ -166,15 +166,15 @@ Result<Rows> accuracy_by_leds(const AccuracyTableOptions& options) {
 
 namespace {
 
-SolvePatch by_reference(const pipeline::ReferenceOptions& options) {
-  return by_stages(pipeline::stages_of(solver::method_of(solver::Level::kReference), options));
+SolvePatch by_reference(const solve::ReferenceOptions& options) {
+  return by_stages(solve::stages_of(solver::method_of(solver::Level::kReference), options));
 }
 
 // By the level reference, whatever gates and left-out light say.
 SolvePatch by_forced_reference() {
-  std::vector<pipeline::Stage> stages = pipeline::stages_of(solver::method_of(solver::Level::kReference));
+  std::vector<solve::Stage> stages = solve::stages_of(solver::method_of(solver::Level::kReference));
   for (const char* judge : {"gates", "choice", "comparison"})
-    stages = pipeline::without(judge, std::move(stages));
+    stages = solve::without(judge, std::move(stages));
   return by_stages(std::move(stages));
 }
 
@@ -408,14 +408,14 @@ Result<ClothPatch> frame_of_cloth(const std::string& name, Size size, int thread
   return render_patch(scene, {0, 0, size.width, size.height}, threads);
 }
 
-Json said_of(const pipeline::FrameFacts& facts) {
+Json said_of(const solve::FrameFacts& facts) {
   Json row = Json::object();
   if (facts.gloss) {
     const solver::MeasuredLobe& lobe = facts.gloss->lobes.front();
     row["said"] = lobe.is_measured() ? name_of(lobe.lobe.family) : name_of(lobe.refusal);
   }
   if (!facts.reference) return row;
-  const pipeline::LightStages& stages = facts.reference->stages;
+  const solve::LightStages& stages = facts.reference->stages;
   row["stages"] = std::string(stages.shadows ? "shadows " : "") + (stages.interreflection ? "bounces" : "");
   row["rounds"] = facts.reference->rounds.size();
   return row;

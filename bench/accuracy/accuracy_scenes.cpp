@@ -118,7 +118,7 @@ RawFrame copy_of(const RawFrame& frame) {
 }
 
 // Counts of all LEDs through parallel films.
-Result<void> run_parallel(const SimulationPlan& plan, Rect area, int threads, pipeline::Mosaics& mosaics) {
+Result<void> run_parallel(const SimulationPlan& plan, Rect area, int threads, solve::Mosaics& mosaics) {
   SceneRig rig = plan.rig;
   rig.lobe_share = lobe_share_of(plan.scene.films, FilmStates::kParallel);
   Result<PassList> passes = build_passes(plan.scene, rig, Output::kCounts);
@@ -158,7 +158,7 @@ Result<void> run_passes(const SimulationPlan& plan, Rect area, int threads, Clot
   const auto put_shot = [&](const PassTile& tile) {
     const bool dark = tile.led == 0;
     const int k = tile.led - 1;
-    pipeline::Mosaics& mosaics = *patch.photographs.mosaics();
+    solve::Mosaics& mosaics = *patch.photographs.mosaics();
     RawFrame& frame = dark ? *mosaics.dark : mosaics.frames[static_cast<std::size_t>(k)];
     for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) {
       frame.counts(x - area.x0, y - area.y0) = tile.counts[i];
@@ -210,21 +210,20 @@ Result<ClothPatch> render_patch(const Scene& scene, Rect area, int threads) {
   patch.normal = Image<float>(size, 3);
   patch.albedo = Image<float>(size, 3);
   patch.openness = Image<float>(size);
-  pipeline::Photographs& photographs = patch.photographs;
+  solve::Photographs& photographs = patch.photographs;
   photographs.size = size;
   photographs.field = std::move(*field);
   photographs.albedo_scale = AlbedoScale::kAbsolute;
   std::vector<RawFrame> frames;
   for (int k = 0; k < lights; ++k) frames.push_back(frame_of(*plan, size));
-  photographs.frames =
-      pipeline::Mosaics(std::move(frames), frame_of(*plan, size), response_of(plan->rig.sensor),
-                        {plan->rig.exposure_us, scene.camera.iso});
+  photographs.frames = solve::Mosaics(std::move(frames), frame_of(*plan, size), response_of(plan->rig.sensor),
+                                      {plan->rig.exposure_us, scene.camera.iso});
   photographs.lobe_share = plan->rig.lobe_share;
   if (Result<void> ran = run_passes(*plan, area, threads, patch); !ran) return std::move(ran).error();
   if (scene.films.states == FilmStates::kBoth) {
     std::vector<RawFrame> more;
     for (int k = 0; k < lights; ++k) more.push_back(frame_of(*plan, size));
-    pipeline::Mosaics parallel = photographs.mosaics()->alike(std::move(more));
+    solve::Mosaics parallel = photographs.mosaics()->alike(std::move(more));
     if (Result<void> ran = run_parallel(*plan, area, threads, parallel); !ran) return std::move(ran).error();
     photographs.parallel = std::move(parallel);
   }
@@ -250,7 +249,7 @@ Result<ClothPatch> with_lights(const ClothPatch& patch, const std::vector<int>& 
   fewer.photographs.camera = patch.photographs.camera;
   fewer.photographs.field = std::move(*field);
   fewer.photographs.albedo_scale = patch.photographs.albedo_scale;
-  const pipeline::Mosaics& all = *patch.photographs.mosaics();
+  const solve::Mosaics& all = *patch.photographs.mosaics();
   std::vector<RawFrame> frames;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const int k = numbers[i] - 1, to = static_cast<int>(i);

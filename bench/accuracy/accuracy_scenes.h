@@ -37,12 +37,12 @@ std::vector<AccuracyScene> accuracy_scenes(SceneSet set, std::uint32_t seed, boo
 
 /// One patch of a scene as a picture of its own: what the product would hold of it, and the truth.
 struct ClothPatch {
-  pipeline::Photographs photographs;  ///< mosaics of counts and the dark shot, with the exact light field
-  Image<float> readings;              ///< plane k: light k as the product reads it
-  Image<float> visible;               ///< plane k: 1 where the point faces light k and sees it, else 0
-  Image<float> normal;                ///< planes X, Y, Z
-  Image<float> albedo;                ///< planes R, G, B: the diffuse part
-  Image<float> openness;              ///< share of an even sky that the point sees; 1 without interreflection
+  solve::Photographs photographs;  ///< mosaics of counts and the dark shot, with the exact light field
+  Image<float> readings;           ///< plane k: light k as the product reads it
+  Image<float> visible;            ///< plane k: 1 where the point faces light k and sees it, else 0
+  Image<float> normal;             ///< planes X, Y, Z
+  Image<float> albedo;             ///< planes R, G, B: the diffuse part
+  Image<float> openness;           ///< share of an even sky that the point sees; 1 without interreflection
 
   const LightField& field() const { return *photographs.field; }
   Size size() const { return photographs.size; }

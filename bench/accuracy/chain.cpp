@@ -210,31 +210,32 @@ class Chain {
     if (!one.knows_paper) {
       if (Result<void> ok = forget_paper(folder / "lights" / "sheet.toml"); !ok) return std::move(ok).error();
     }
-    app::CalibrateCameraOptions boards;
+    calibration::CalibrateCameraOptions boards;
     boards.input = folder / "camera";
     boards.output = folder / "with camera";
     boards.rig = "virtual rig";
     const auto camera = calibrate_camera(boards, context_);
     if (!camera) return camera.error();
-    const auto response =
-        app::calibrate_response({folder / "response", boards.output, folder / "with response", {}}, context_);
+    const auto response = calibration::calibrate_response(
+        {folder / "response", boards.output, folder / "with response", {}}, context_);
     if (!response) return response.error();
     const fs::path whole = folder / "whole";
-    const auto lights = app::calibrate_lights({folder / "lights", folder / "with response", whole}, context_);
+    const auto lights =
+        calibration::calibrate_lights({folder / "lights", folder / "with response", whole}, context_);
     if (!lights) return lights.error();
     return calibrations_[key] = whole;
   }
 
   Result<Json> score(const fs::path& session, const fs::path& calibration, const std::string& level,
                      bool is_relative) {
-    const Result<app::SolveReport> solved = solve(session, calibration, level);
+    const Result<solve::SolveReport> solved = solve(session, calibration, level);
     if (!solved) return solved.error();
-    const Result<app::SolveReport> exact = solve(session, {}, level);
+    const Result<solve::SolveReport> exact = solve(session, {}, level);
     if (!exact) return exact.error();
     const fs::path truth = session / "truth";
-    const auto angles = app::compare_normals(solved->folder / "normal.exr", truth / "normal.exr", {});
+    const auto angles = material::compare_normals(solved->folder / "normal.exr", truth / "normal.exr", {});
     if (!angles) return angles.error();
-    const auto best = app::compare_normals(exact->folder / "normal.exr", truth / "normal.exr", {});
+    const auto best = material::compare_normals(exact->folder / "normal.exr", truth / "normal.exr", {});
     if (!best) return best.error();
     const auto albedo = read_image(solved->folder / "albedo.exr");
     if (!albedo) return albedo.error();
@@ -248,12 +249,12 @@ class Chain {
                 {"seconds", solved->seconds.total}};
   }
 
-  Result<app::SolveReport> solve(const fs::path& session, const fs::path& calibration,
-                                 const std::string& level) {
-    app::SolveOptions options;
+  Result<solve::SolveReport> solve(const fs::path& session, const fs::path& calibration,
+                                   const std::string& level) {
+    solve::SolveOptions options;
     options.method = level;
     options.previews = false;
-    return app::solve_session({session, calibration, {}}, options, context_);
+    return solve::solve_session({session, calibration, {}}, options, context_);
   }
 
   JobContext context_;

@@ -60,7 +60,7 @@ class Gatherer {
         sigma_(maps),
         status_(maps) {}
 
-  Result<void> operator()(const pipeline::MapBand& band) {
+  Result<void> operator()(const solve::MapBand& band) {
     const int width = band.rows.width();
     for (int y = 0; y < band.rows.height(); ++y) {
       for (int c = 0; c < 3; ++c) {
@@ -151,15 +151,15 @@ Json coverage_of(std::span<const StatedError> pixels) {
 Result<std::vector<StatedError>> stated_errors(const ClothPatch& patch, const solver::MethodName& level,
                                                int threads) {
   const bool is_half = level.extent == solver::Extent::kHalfSize;
-  Result<pipeline::Photographs> half = pipeline::Photographs();
-  if (is_half) half = pipeline::half_size(patch.photographs, threads);
+  Result<solve::Photographs> half = solve::Photographs();
+  if (is_half) half = solve::half_size(patch.photographs, threads);
   if (!half) return half.error();
-  const pipeline::Photographs& photographs = is_half ? *half : patch.photographs;
+  const solve::Photographs& photographs = is_half ? *half : patch.photographs;
   Gatherer gatherer(patch, photographs.size);
   JobContext context;
   context.threads = threads;
-  const Result<pipeline::FrameFacts> solved =
-      pipeline::solve_frame(photographs, level, pipeline::kSolveTile, context, std::ref(gatherer));
+  const Result<solve::FrameFacts> solved =
+      solve::solve_frame(photographs, level, solve::kSolveTile, context, std::ref(gatherer));
   if (!solved) return solved.error();
   return gatherer.errors();
 }
@@ -248,15 +248,15 @@ Result<void> add_rows(AccuracyScene scene, double megapixels, int threads, Rows&
   // A session with a truth is held against it while pictures are drawn, which no price knows.
   const fs::path truth = scratch.path() / "truth";
   fs::rename(session / "truth", truth);
-  const app::SessionOptions input = {.folder = session, .calibration = {}, .leds = {}};
+  const solve::SessionOptions input = {.folder = session, .calibration = {}, .leds = {}};
   const JobContext context = {.threads = threads};
-  const Result<app::Ladder> ladder = app::explain_session(input, {}, {}, context);
+  const Result<solve::Ladder> ladder = solve::explain_session(input, {}, {}, context);
   if (!ladder) return ladder.error();
-  for (const app::LevelPrice& price : ladder->levels) {
-    app::SolveOptions options;
+  for (const solve::LevelPrice& price : ladder->levels) {
+    solve::SolveOptions options;
     options.method = price.name();
     options.output = scratch.path() / price.name();
-    const Result<app::SolveReport> solved = app::solve_session(input, options, context);
+    const Result<solve::SolveReport> solved = solve::solve_session(input, options, context);
     if (!solved) return solved.error();
     const double foretold = price.seconds.total(), taken = solved->seconds.total;
     Json row = {{"scene", scene.name},
@@ -269,8 +269,8 @@ Result<void> add_rows(AccuracyScene scene, double megapixels, int threads, Rows&
                 {"predicted_solved", price.error.solved},
                 {"solved", solved->expected.solved}};
     if (solved->facts.size == size) {
-      const Result<app::TruthError> error =
-          app::error_against(truth / "normal.exr", options.output / "normal.exr");
+      const Result<solve::TruthError> error =
+          solve::error_against(truth / "normal.exr", options.output / "normal.exr");
       if (!error) return error.error();
       row["true_deg"] = error->normal.mean_deg;
       row["ratio"] = price.error.total_deg / error->normal.mean_deg;

@@ -232,12 +232,12 @@ Result<void> add_second_pose(const AccuracyScene& scene, const ClothPose& pose, 
   tilted.seed += 1000;  // other noise
   Result<ClothPatch> other = render_patch(tilted, scene.patches.front(), threads);
   if (!other) return std::move(other).error();
-  const auto number = [](pipeline::Photographs& photographs) {
+  const auto number = [](solve::Photographs& photographs) {
     photographs.leds.resize(photographs.count());
     std::iota(photographs.leds.begin(), photographs.leds.end(), 1);
   };
   number(other->photographs);
-  Result<pipeline::GlossSamples> samples =
+  Result<solve::GlossSamples> samples =
       sample_gloss(other->photographs, *solver::robust_method(), nullptr, threads);
   if (!samples) return std::move(samples).error();
   for (ClothPatch& patch : patches) {
@@ -252,7 +252,7 @@ Result<double> pixel_us(const ClothPatch& patch, const solver::Method& method) {
   SolvedMaps maps(patch.size());
   Result<void> solved;
   const double seconds = least_seconds(3, [&] {
-    const pipeline::Photographs& photographs = patch.photographs;
+    const solve::Photographs& photographs = patch.photographs;
     solved = solve_images(method, planes_of(patch.readings), patch.field(), photographs.planes().cfa,
                           photographs.noise(), 1, maps);
   });
@@ -285,11 +285,11 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
   if (!before) return before.error();
   if (!after) return after.error();
 
-  const pipeline::Photographs& photographs = bounded.patches.front().photographs;
+  const solve::Photographs& photographs = bounded.patches.front().photographs;
   const auto base = solver::robust_method();
-  Result<pipeline::MeasuredGloss> measured = Error{};
+  Result<solve::MeasuredGloss> measured = Error{};
   const double fit_s =
-      least_seconds(1, [&] { measured = pipeline::measure_gloss(photographs, *base, nullptr, 1); });
+      least_seconds(1, [&] { measured = solve::measure_gloss(photographs, *base, nullptr, 1); });
   if (!measured) return std::move(measured).error();
   const solver::MeasuredLobe& found = measured->lobes.front();
   const solver::Lobe& lobe = found.lobe;
@@ -302,7 +302,7 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
     const auto beneath = solver::standard_method();
     const auto glossy =
         solver::glossy_method(*beneath, {{lobe, solver::one_sigma_off(lobe, found.covariance)}},
-                              pipeline::sight_of(photographs), measured->unit);
+                              solve::sight_of(photographs), measured->unit);
     const Result<double> timed = pixel_us(bounded.patches.front(), *glossy);
     if (!timed) return timed.error();
     glossy_us = *timed;

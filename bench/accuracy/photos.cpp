@@ -33,7 +33,7 @@ struct Truth {
   Rect around;  ///< the least rectangle with all of them
 };
 
-Result<Truth> read_truth(const pipeline::SolvePlan& plan, const std::filesystem::path& folder) {
+Result<Truth> read_truth(const solve::SolvePlan& plan, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "normal_gt.exr";
   Result<LoadedImage> normal = read_image(file);
   if (!normal) return std::move(normal).error();
@@ -79,23 +79,23 @@ struct Solved {
   std::string gloss;  ///< of a level that looks for a lobe: what it found, or why it found none
 };
 
-std::string words_of(const pipeline::GlossFacts& gloss) {
+std::string words_of(const solve::GlossFacts& gloss) {
   const solver::MeasuredLobe& first = gloss.lobes.front();
   if (!first.is_measured()) return solver::name_of(first.refusal);
   return gloss.share > 0 ? solver::name_of(first.lobe.family) : "measured, no gain";
 }
 
 // A level by all its steps where it solves a frame of this size, else the method alone.
-Result<void> run(const solver::MethodName& name, const pipeline::Photographs& photographs, int threads,
+Result<void> run(const solver::MethodName& name, const solve::Photographs& photographs, int threads,
                  SolvedMaps& maps, std::string& gloss) {
   if (name.level && name.extent != solver::Extent::kHalfSize) {
-    const Result<pipeline::FrameFacts> facts = solve_level(photographs, name, threads, maps);
+    const Result<solve::FrameFacts> facts = solve_level(photographs, name, threads, maps);
     if (!facts) return facts.error();
     if (facts->gloss) gloss = words_of(*facts->gloss);
     return {};
   }
   std::vector<View<const float>> readings;
-  for (const Image<float>& photo : std::get<pipeline::Developed>(photographs.frames).rgb) {
+  for (const Image<float>& photo : std::get<solve::Developed>(photographs.frames).rgb) {
     for (const View<const float>& plane : planes_of(photo)) readings.push_back(plane);
   }
   maps.planes = 3;
@@ -104,19 +104,19 @@ Result<void> run(const solver::MethodName& name, const pipeline::Photographs& ph
 }
 
 // The photographs of these numbers, from 1, where there is truth.
-Result<pipeline::Photographs> choose(const pipeline::Photographs& all, const std::vector<int>& numbers,
-                                     const Truth& truth) {
+Result<solve::Photographs> choose(const solve::Photographs& all, const std::vector<int>& numbers,
+                                  const Truth& truth) {
   std::vector<std::size_t> others;
   for (std::size_t k = 0; k < all.count(); ++k) {
     if (std::ranges::count(numbers, static_cast<int>(k) + 1) == 0) others.push_back(k);
   }
-  Result<pipeline::Photographs> chosen = pipeline::cut(all, truth.around);
+  Result<solve::Photographs> chosen = solve::cut(all, truth.around);
   if (!chosen) return chosen;
-  if (Result<void> ok = pipeline::leave_out(others, *chosen); !ok) return std::move(ok).error();
+  if (Result<void> ok = solve::leave_out(others, *chosen); !ok) return std::move(ok).error();
   return chosen;
 }
 
-Result<Solved> solve(const solver::MethodName& name, const pipeline::Photographs& photographs,
+Result<Solved> solve(const solver::MethodName& name, const solve::Photographs& photographs,
                      const Truth& truth, int threads) {
   const Rect part = truth.around;
   SolvedMaps maps(photographs.size);
@@ -138,15 +138,15 @@ Result<Solved> solve(const solver::MethodName& name, const pipeline::Photographs
   return result;
 }
 
-Result<Json> row_of(const solver::MethodName& name, const pipeline::Photographs& photographs,
+Result<Json> row_of(const solver::MethodName& name, const solve::Photographs& photographs,
                     const std::vector<std::vector<int>>& subsets, const Truth& truth, int threads) {
   std::vector<double> means;
   std::map<std::string, int> gloss;  // in how many subsets each was said
   double seconds = 0;
   for (const std::vector<int>& numbers : subsets) {
-    Result<pipeline::Photographs> chosen = choose(photographs, numbers, truth);
+    Result<solve::Photographs> chosen = choose(photographs, numbers, truth);
     if (!chosen) return std::move(chosen).error();
-    if (!name.keeps_clipped) chosen->plane_weights = pipeline::measure_plane_weights(*chosen);
+    if (!name.keeps_clipped) chosen->plane_weights = solve::measure_plane_weights(*chosen);
     const Result<Solved> solved = solve(name, *chosen, truth, threads);
     if (!solved) return solved.error();
     means.push_back(solved->mean_deg);
@@ -174,7 +174,7 @@ Result<Json> row_of(const solver::MethodName& name, const pipeline::Photographs&
               {"threads", threads}};
 }
 
-Result<std::vector<std::vector<int>>> choose_subsets(const pipeline::SolvePlan& plan,
+Result<std::vector<std::vector<int>>> choose_subsets(const solve::SolvePlan& plan,
                                                      const PhotosOptions& options) {
   std::vector<Vec3> directions;
   for (const DistantLight& light : std::get<DistantLights>(*plan.calibration.lights).lights)
@@ -249,9 +249,9 @@ std::vector<int> first_lights(int lights, int subsets, std::uint32_t seed) {
 Result<Rows> photos_table(const PhotosOptions& options) {
   const Result<std::vector<solver::MethodName>> methods = chosen_methods(options.methods);
   if (!methods) return methods.error();
-  app::PhotoOptions photos;
+  solve::PhotoOptions photos;
   photos.folder = options.folder;
-  Result<pipeline::SolvePlan> plan = app::plan_photos(photos);
+  Result<solve::SolvePlan> plan = solve::plan_photos(photos);
   if (!plan) return std::move(plan).error();
   const auto subsets = choose_subsets(*plan, options);
   if (!subsets) return subsets.error();
@@ -265,7 +265,7 @@ Result<Rows> photos_table(const PhotosOptions& options) {
     plan->clipped = keep ? Clipped::kKeep : Clipped::kMark;
     JobContext context;
     context.threads = threads;
-    const auto photographs = app::load_photographs(*plan, context);
+    const auto photographs = solve::load_photographs(*plan, context);
     if (!photographs) return photographs.error();
     for (const solver::MethodName& name : *methods) {
       if (!wants_this(name)) continue;

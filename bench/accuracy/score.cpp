@@ -90,7 +90,7 @@ class Errors {
   }
 
   Json row(const std::string& method) {
-    const app::NormalComparison angles = app::summarize(angles_);
+    const solve::NormalComparison angles = solve::summarize(angles_);
     return {{"method", method},
             {"mean_deg", angles.mean_deg},
             {"p95_deg", angles.p95_deg},
@@ -133,7 +133,7 @@ Result<double> overhead_of(const Contender& contender, const ClothPatch& patch, 
   const Result<double> whole = seconds_of(contender, patch, threads, maps);
   if (!whole) return whole;
   const int columns = patch.size().width / 4 * 2;
-  Result<pipeline::Photographs> part = cut(patch.photographs, {0, 0, columns, patch.size().height});
+  Result<solve::Photographs> part = cut(patch.photographs, {0, 0, columns, patch.size().height});
   if (!part) return std::move(part).error();
   ClothPatch left;
   left.photographs = std::move(*part);
@@ -215,9 +215,9 @@ Result<void> solve_patch(const solver::Method& method, const std::vector<View<co
 }
 
 // Puts bands of a frame into maps; albedo in each photosite's own colour where it was measured alone.
-pipeline::BandSink keeper_of(const pipeline::Planes& planes, SolvedMaps& maps) {
+solve::BandSink keeper_of(const solve::Planes& planes, SolvedMaps& maps) {
   maps.planes = planes.count;
-  return [planes, &maps](const pipeline::MapBand& band) -> Result<void> {
+  return [planes, &maps](const solve::MapBand& band) -> Result<void> {
     for (int y = 0; y < band.rows.height(); ++y) {
       const int row = band.rows.y0 + y;
       for (int c = 0; c < 3; ++c) {
@@ -282,10 +282,10 @@ void enlarge(const SolvedMaps& half, SolvedMaps& maps) {
 // Each pixel of a preview stands for the four photosites that it was made of.
 Result<void> solve_at_half_size(const ClothPatch& patch, const solver::MethodName& level, int threads,
                                 SolvedMaps& maps) {
-  const Result<pipeline::Photographs> half = pipeline::half_size(patch.photographs, threads);
+  const Result<solve::Photographs> half = solve::half_size(patch.photographs, threads);
   if (!half) return half.error();
   SolvedMaps solved(half->size);
-  const Result<pipeline::FrameFacts> facts = solve_level(*half, level, threads, solved);
+  const Result<solve::FrameFacts> facts = solve_level(*half, level, threads, solved);
   if (!facts) return facts.error();
   maps.planes = solved.planes;
   maps.left_out_rel = solved.left_out_rel;
@@ -295,10 +295,10 @@ Result<void> solve_at_half_size(const ClothPatch& patch, const solver::MethodNam
 
 }  // namespace
 
-Result<pipeline::FrameFacts> solve_level(const pipeline::Photographs& photographs,
-                                         const solver::MethodName& level, int threads, SolvedMaps& maps) {
-  Result<pipeline::FrameFacts> facts = solve_frame(
-      photographs, level, pipeline::kSolveTile, on_threads(threads), keeper_of(photographs.planes(), maps));
+Result<solve::FrameFacts> solve_level(const solve::Photographs& photographs, const solver::MethodName& level,
+                                      int threads, SolvedMaps& maps) {
+  Result<solve::FrameFacts> facts = solve_frame(photographs, level, solve::kSolveTile, on_threads(threads),
+                                                keeper_of(photographs.planes(), maps));
   maps.lobe_seconds = facts && facts->gloss ? facts->gloss->seconds : 0;
   if (facts && facts->left_out) maps.left_out_rel = solver::error_of_all(*facts->left_out).median;
   return facts;
@@ -310,7 +310,7 @@ SolvePatch as_product(std::shared_ptr<const solver::Method> method) {
       return solve_patch(*method, planes_of(patch.readings), patch, threads, maps);
     }
     const TileOptions whole = {.width = patch.size().width, .height = patch.size().height};
-    pipeline::TileReader reader(patch.photographs, whole, pipeline::ReadAs::kRgb);
+    solve::TileReader reader(patch.photographs, whole, solve::ReadAs::kRgb);
     maps.planes = 3;
     const auto readings = reader.read(patch.area()).readings;
     return solve_patch(*method, {readings.begin(), readings.end()}, patch, threads, maps);
@@ -320,15 +320,15 @@ SolvePatch as_product(std::shared_ptr<const solver::Method> method) {
 SolvePatch by_level(const solver::MethodName& level) {
   return [level](const ClothPatch& patch, int threads, SolvedMaps& maps) {
     if (level.extent == solver::Extent::kHalfSize) return solve_at_half_size(patch, level, threads, maps);
-    const Result<pipeline::FrameFacts> facts = solve_level(patch.photographs, level, threads, maps);
+    const Result<solve::FrameFacts> facts = solve_level(patch.photographs, level, threads, maps);
     return facts ? Result<void>() : facts.error();
   };
 }
 
-SolvePatch by_stages(std::vector<pipeline::Stage> stages) {
+SolvePatch by_stages(std::vector<solve::Stage> stages) {
   return
       [stages = std::move(stages)](const ClothPatch& patch, int threads, SolvedMaps& maps) -> Result<void> {
-        const auto solved = solve_by(stages, patch.photographs, pipeline::kSolveTile, on_threads(threads),
+        const auto solved = solve_by(stages, patch.photographs, solve::kSolveTile, on_threads(threads),
                                      keeper_of(patch.photographs.planes(), maps));
         return solved ? Result<void>() : solved.error();
       };
@@ -376,7 +376,7 @@ Result<void> solve_images(const solver::Method& method, const std::vector<View<c
                           const LightField& field, const CfaPattern& cfa,
                           const std::optional<NoiseModel>& noise, int threads, SolvedMaps& maps,
                           const std::array<double, 3>& plane_weights) {
-  TileOptions tiles = pipeline::kSolveTile;
+  TileOptions tiles = solve::kSolveTile;
   tiles.threads = threads;
   const Size size = maps.status.size();
   return for_each_tile({0, 0, size.width, size.height}, tiles, {}, [&](Rect tile, int) {

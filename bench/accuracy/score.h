@@ -40,10 +40,10 @@ Result<std::vector<Contender>> contenders_named(const std::vector<std::string>& 
 std::vector<std::string> level_names();
 
 /// By stages on a patch of its own size.
-SolvePatch by_stages(std::vector<pipeline::Stage> stages);
+SolvePatch by_stages(std::vector<solve::Stage> stages);
 /// Photographs by a level, as the product runs it on a frame of its own size.
-Result<pipeline::FrameFacts> solve_level(const pipeline::Photographs& photographs,
-                                         const solver::MethodName& level, int threads, SolvedMaps& maps);
+Result<solve::FrameFacts> solve_level(const solve::Photographs& photographs, const solver::MethodName& level,
+                                      int threads, SolvedMaps& maps);
 /// A level as the product runs it on a frame: from counts to maps. Each pixel of a preview stands for the
 /// four photosites that it was made of.
 SolvePatch by_level(const solver::MethodName& level);

@@ -24,14 +24,14 @@ namespace {
 constexpr int kRepeats = 3;
 constexpr double kMegapixels = 4;
 
-Result<std::vector<std::filesystem::path>> write_frames(const pipeline::Photographs& photographs,
+Result<std::vector<std::filesystem::path>> write_frames(const solve::Photographs& photographs,
                                                         const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   const auto write = [&](const RawFrame& frame) -> Result<void> {
     files.push_back(folder / fmt::format("{:02}.dng", files.size()));
     return simulator::write_dng(files.back(), frame);
   };
-  const pipeline::Mosaics& mosaics = *photographs.mosaics();
+  const solve::Mosaics& mosaics = *photographs.mosaics();
   for (const RawFrame& frame : mosaics.frames) {
     if (Result<void> ok = write(frame); !ok) return std::move(ok).error();
   }
@@ -56,8 +56,8 @@ double copy_seconds(double bytes, int threads) {
   return seconds * bytes / (2 * static_cast<double>(half));
 }
 
-pipeline::Photographs grey_mosaics(const LightField& field, Size size, int threads) {
-  pipeline::Photographs photographs;
+solve::Photographs grey_mosaics(const LightField& field, Size size, int threads) {
+  solve::Photographs photographs;
   photographs.size = size;
   photographs.field = field;
   constexpr double kExposureUs = 10000;
@@ -89,11 +89,11 @@ pipeline::Photographs grey_mosaics(const LightField& field, Size size, int threa
     std::fill_n(counts, size.width, std::uint16_t{600});
   });
   photographs.frames =
-      pipeline::Mosaics(std::move(frames), std::move(dark), Response{2.7, 1.2, {}}, {kExposureUs, 100});
+      solve::Mosaics(std::move(frames), std::move(dark), Response{2.7, 1.2, {}}, {kExposureUs, 100});
   return photographs;
 }
 
-Result<double> unpack_seconds_a_pixel(const pipeline::Photographs& photographs, int threads) {
+Result<double> unpack_seconds_a_pixel(const solve::Photographs& photographs, int threads) {
   const TemporaryFolder scratch;
   const auto files = write_frames(photographs, scratch.path());
   if (!files) return files.error();

@@ -18,11 +18,11 @@ double copy_seconds(double bytes, int threads);
 
 /// A mosaic session in memory: every light of the field on a flat cloth of middle grey, as counts, and the
 /// dark shot.
-pipeline::Photographs grey_mosaics(const LightField& field, Size size, int threads);
+solve::Photographs grey_mosaics(const LightField& field, Size size, int threads);
 
 /// Seconds that LibRaw alone takes to unpack all frames of a session, from DNG files written for it, by
 /// pixel.
-Result<double> unpack_seconds_a_pixel(const pipeline::Photographs& photographs, int threads);
+Result<double> unpack_seconds_a_pixel(const solve::Photographs& photographs, int threads);
 
 struct Yardsticks {
   double copy_seconds_a_byte = 0;     ///< read or written

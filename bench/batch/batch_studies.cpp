@@ -37,9 +37,9 @@ namespace fs = std::filesystem;
 Result<double> solve_in_turn(const fs::path& archive, const fs::path& output, int sessions, int threads) {
   Stopwatch watch;
   for (int i = 0; i < sessions; ++i) {
-    app::SolveOptions options;
+    solve::SolveOptions options;
     options.output = output / std::to_string(i);
-    const Result<app::SolveReport> solved = app::solve_session(
+    const Result<solve::SolveReport> solved = solve::solve_session(
         {.folder = session_in(archive, i), .calibration = {}, .leds = {}}, options, {threads});
     if (!solved) return solved.error();
   }
@@ -86,17 +86,18 @@ namespace {
 
 constexpr int kOwn = 10, kSample = 10;
 
-batch::Outcome outcome_of(const batch::Plan& plan, const batch::PlannedSolve& planned, int number) {
-  batch::Outcome outcome;
+library::TaskOutcome outcome_of(const library::BatchPlan& plan, const library::PlannedSolve& planned,
+                                int number) {
+  library::TaskOutcome outcome;
   outcome.plan = plan.header.id;
   outcome.session = planned.session;
-  outcome.state = batch::State::kSolved;
+  outcome.state = library::TaskState::kSolved;
   outcome.solve = planned.solve;
-  outcome.folder = batch::solve_parent(plan.header, planned.session) + "/" + planned.solve;
+  outcome.folder = library::solve_parent(plan.header, planned.session) + "/" + planned.solve;
   outcome.seconds = outcome.node_seconds = 5;
   outcome.sigma_deg = 0.6;
   outcome.left_out = 0.03 + 1e-6 * number;
-  batch::MapChange change;
+  library::MapChange change;
   change.pixels = 16'000'000;
   change.mean_deg = 0.1 + 1e-5 * number;
   change.p95_deg = 2 * change.mean_deg;
@@ -134,10 +135,10 @@ Result<Rows> batch_merge(const StudyOptions& options) {
   const int sessions = options.runs;
   const TemporaryFolder folder;
   const fs::path archive = folder.path() / "archive", file = folder.path() / "plan.jsonl";
-  batch::Plan plan;
+  library::BatchPlan plan;
   plan.header.archive = archive.string();
   for (int i = 0; i < sessions; ++i) {
-    batch::PlannedSolve planned;
+    library::PlannedSolve planned;
     planned.session = session_in(archive, i).string();
     planned.digest = std::string(64, 'a');
     planned.quality = "standard";
@@ -149,18 +150,18 @@ Result<Rows> batch_merge(const StudyOptions& options) {
     planned.forecast.seconds = 6;
     plan.solves.push_back(std::move(planned));
   }
-  batch::share_out(plan.solves, 600);
-  if (const Result<void> written = app::write_plan(file, batch::text_of(plan)); !written)
+  library::share_out(plan.solves, 600);
+  if (const Result<void> written = library::write_plan(file, library::text_of(plan)); !written)
     return written.error();
-  const Result<app::PlanFile> opened = app::open_plan(file);
+  const Result<library::PlanFile> opened = library::open_plan(file);
   if (!opened) return opened.error();
   fs::create_directories(opened->results());
   for (int i = 0; i < sessions; ++i) {
-    const batch::PlannedSolve& planned = plan.solves[static_cast<std::size_t>(i)];
-    const batch::Outcome outcome = outcome_of(plan, planned, i);
+    const library::PlannedSolve& planned = plan.solves[static_cast<std::size_t>(i)];
+    const library::TaskOutcome outcome = outcome_of(plan, planned, i);
     fs::create_directories(outcome.folder);
     std::ofstream(fs::path(outcome.folder) / "solve.json") << "{}";
-    std::ofstream(opened->results_of(planned.task), std::ios::app) << batch::line_of(outcome);
+    std::ofstream(opened->results_of(planned.task), std::ios::app) << library::line_of(outcome);
   }
   Stopwatch watch;
   const Result<std::string> merged = run_weft({"batch", "merge", file.string(), "-q"});
@@ -220,13 +221,13 @@ Result<Rows> batch_kills(const StudyOptions& options, int kills) {
   const Result<Killed> killed = run_and_kill(plan, log, kills);
   if (!killed) return killed.error();
   const int half_made = half_made_in(archive);
-  const Result<app::MergeReport> merged = app::merge_batch(plan, {});
+  const Result<library::MergeReport> merged = library::merge_batch(plan, {});
   if (!merged) return merged.error();
   int once = 0;
-  for (const batch::Row& row : merged->state.rows) {
+  for (const library::BatchRow& row : merged->state.rows) {
     if (list_solves(row.planned->session).size() == 1) ++once;
   }
-  const batch::Summary& summary = merged->state.summary;
+  const library::BatchSummary& summary = merged->state.summary;
   return Rows{{{"sessions", sessions},
                {"kills", killed->kills},
                {"published_once", once},
@@ -316,7 +317,7 @@ Calibration misplaced(Calibration calibration, double by_mm) {
 }
 
 // Plans and solves the archive into `folder`, and reads what came of it.
-Result<app::MergeReport> solve_all(const fs::path& folder, const fs::path& archive, int threads) {
+Result<library::MergeReport> solve_all(const fs::path& folder, const fs::path& archive, int threads) {
   const fs::path plan = folder / "plan.jsonl";
   const std::string cores = std::to_string(threads);
   for (const std::vector<std::string>& arguments :
@@ -325,16 +326,16 @@ Result<app::MergeReport> solve_all(const fs::path& folder, const fs::path& archi
         {"batch", "run", plan.string(), "-q", "--threads", cores}}) {
     if (const Result<std::string> said = run_weft(arguments); !said) return said.error();
   }
-  return app::merge_batch(plan, {});
+  return library::merge_batch(plan, {});
 }
 
-Json row_of(double moved_mm, const app::BatchState& state) {
+Json row_of(double moved_mm, const library::BatchState& state) {
   double wrong = 0, others = 0;
-  for (const batch::ByCalibration& each : state.summary.calibrations) {
+  for (const library::ByCalibration& each : state.summary.calibrations) {
     double& left_out = each.rig == rigs()[kWrong].name ? wrong : others;
     left_out = std::max(left_out, each.left_out.value_or(0));
   }
-  const std::vector<Verdict> verdicts = app::verdicts_of(state);
+  const std::vector<Verdict> verdicts = library::verdicts_of(state);
   return {{"moved_mm", moved_mm},
           {"sessions", state.rows.size()},
           {"left_out_percent", 100 * wrong},
@@ -360,7 +361,7 @@ Result<Rows> batch_rigs(const StudyOptions& options) {
     }
     const fs::path own = folder.path() / fmt::format("{:.0f}", moved_mm);
     if (Result<void> made = make_writable_folder(own); !made) return made.error();
-    const Result<app::MergeReport> merged = solve_all(own, archive, resolved_threads(options.threads));
+    const Result<library::MergeReport> merged = solve_all(own, archive, resolved_threads(options.threads));
     if (!merged) return merged.error();
     rows.push_back(row_of(moved_mm, merged->state));
   }

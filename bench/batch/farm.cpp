@@ -329,7 +329,7 @@ Result<Json> held_against_real(const StudyOptions& options) {
   const Result<std::string> planned = run_weft({"batch", "plan", archive.string(), "-o", plan.string(),
                                                 "--sample", "1", "--task-minutes", "0.001", "-q"});
   if (!planned) return planned.error();
-  const Result<app::PlanFile> file = app::open_plan(plan);
+  const Result<library::PlanFile> file = library::open_plan(plan);
   if (!file) return file.error();
   const int tasks = static_cast<int>(file->header.tasks.size());
   const Result<RealRun> real = run_tasks(plan, tasks, at_once, log);

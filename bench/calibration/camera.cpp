@@ -191,15 +191,15 @@ Result<Rows> rendered_rows(const StudyOptions& options) {
   const Result<simulator::SceneRig> rig = rig_of(scenes.front());
   if (!rig) return rig.error();
   const JobContext context = {.threads = options.threads};
-  app::CalibrateCameraOptions calibrate;
+  calibration::CalibrateCameraOptions calibrate;
   calibrate.input = input;
   calibrate.output = scratch.path() / "calibration";
-  const Result<app::CalibrateOutcome> outcome = calibrate_camera(calibrate, context);
+  const Result<calibration::CalibrateOutcome> outcome = calibrate_camera(calibrate, context);
   if (!outcome) return outcome.error();
-  const Result<app::PrintedBoard> board = app::read_board_file(input / "board.toml", {});
+  const Result<calibration::PrintedBoard> board = calibration::read_board_file(input / "board.toml", {});
   if (!board) return board.error();
-  const Result<app::BoardPhotographs> found =
-      app::read_board_photographs({.folder = input, .board = board->board}, context);
+  const Result<calibration::BoardPhotographs> found =
+      calibration::read_board_photographs({.folder = input, .board = board->board}, context);
   if (!found) return found.error();
 
   const std::string name = fmt::format("photographs rendered, {} of {:.1f} megapixels", kBoards,
@@ -208,7 +208,7 @@ Result<Rows> rendered_rows(const StudyOptions& options) {
   int used = 0;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     // By name the table comes last.
-    const app::BoardPhotograph& photograph = found->photographs[i == 0 ? scenes.size() - 1 : i - 1];
+    const calibration::BoardPhotograph& photograph = found->photographs[i == 0 ? scenes.size() - 1 : i - 1];
     if (!photograph.left_out.empty()) continue;
     ++used;
     add_errors(scenes[i], rig->camera, {photograph.name, photograph.sighting.corners}, corners);
@@ -257,10 +257,10 @@ Result<Rows> time_rows(const StudyOptions& options) {
     if (!decoded) failure = decoded.error();
   });
   if (failure) return *failure;
-  app::CalibrateCameraOptions calibrate;
+  calibration::CalibrateCameraOptions calibrate;
   calibrate.input = input;
   calibrate.output = scratch.path() / "calibration";
-  std::optional<Result<app::CalibrateOutcome>> outcome;
+  std::optional<Result<calibration::CalibrateOutcome>> outcome;
   const double seconds = least_seconds(1, [&] { outcome = calibrate_camera(calibrate, context); });
   if (!*outcome) return outcome->error();
   Rows rows = {row(fmt::format("time, {} photographs of {:.1f} megapixels", kTimedBoards,
@@ -408,11 +408,11 @@ Result<void> measure(const char* name, simulator::Body body, const StudyOptions&
     const fs::path input = scratch.path() / "response";
     if (Result<void> ok = capture(scene_of(body, seed), rig->exposure_us, input, options.threads); !ok)
       return ok;
-    app::CalibrateResponseOptions job;
+    calibration::CalibrateResponseOptions job;
     job.input = input;
     job.output = scratch.path() / "calibration";
     job.rig = "bench";
-    const Result<app::CalibrateOutcome> done = calibrate_response(job, context);
+    const Result<calibration::CalibrateOutcome> done = calibrate_response(job, context);
     if (!done) return done.error();
     const Json& n = done->report.numbers;
     const Response& measured = *done->calibration.response;

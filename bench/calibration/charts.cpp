@@ -180,12 +180,12 @@ Result<Rows> calibration_color_table(const StudyOptions& options) {
   context.threads = options.threads;
   Rows rows;
   for (const auto& [name, input] : {std::pair{"session", session}, std::pair{"photograph", photograph}}) {
-    app::CalibrateColorOptions job;
+    calibration::CalibrateColorOptions job;
     job.input = input;
     job.from = session / "chart.weft" / "calibration";
     job.curve = true;
     job.output = scratch.path() / fmt::format("{}-calibration", name);
-    const Result<app::CalibrateOutcome> done = calibrate_color(job, context);
+    const Result<calibration::CalibrateOutcome> done = calibrate_color(job, context);
     if (!done) return done.error();
     const Json& n = done->report.numbers;
     const ColorTransform by_curve = *done->calibration.color;

@@ -167,35 +167,38 @@ class Walkthrough {
   }
 
   Result<void> calibrate() {
-    app::CalibrateCameraOptions boards;
+    calibration::CalibrateCameraOptions boards;
     boards.input = at("camera");
     boards.output = at("c1");
     boards.rig = "virtual rig";
     const auto camera = calibrate_camera(boards, context_);
     if (!camera) return camera.error();
-    const auto response = app::calibrate_response({at("response"), at("c1"), at("c2"), {}}, context_);
+    const auto response = calibration::calibrate_response({at("response"), at("c1"), at("c2"), {}}, context_);
     if (!response) return response.error();
     contenders_.push_back({"none: tape and data sheets", at("start")});
-    constexpr std::pair<const char*, app::LightsMethod> kMethods[] = {
-        {"seed", app::LightsMethod::kSeed},
-        {"per pixel", app::LightsMethod::kPerPixel},
-        {"ours", app::LightsMethod::kPhysical}};
+    constexpr std::pair<const char*, calibration::LightsMethod> kMethods[] = {
+        {"seed", calibration::LightsMethod::kSeed},
+        {"per pixel", calibration::LightsMethod::kPerPixel},
+        {"ours", calibration::LightsMethod::kPhysical}};
     for (const auto& [name, method] : kMethods) {
-      app::CalibrateLightsOptions lights = {at("lights"), at("c2"), at(fmt::format("lights {}", name))};
+      calibration::CalibrateLightsOptions lights = {at("lights"), at("c2"),
+                                                    at(fmt::format("lights {}", name))};
       lights.method = method;
       lights.accept_misfit = true;  // the row says it
       const auto lit = calibrate_lights(lights, context_);
       if (!lit) return lit.error();
       chi_square_[name] = lit->report.numbers.value("chi_square", 0.0);
-      if (method == app::LightsMethod::kPhysical) delta_ = lit->report.numbers.value("delta", 0.0);
+      if (method == calibration::LightsMethod::kPhysical) delta_ = lit->report.numbers.value("delta", 0.0);
       const fs::path whole = at(fmt::format("whole {}", name));
-      const auto color = app::calibrate_color({at("color"), lights.output, whole, {}, {}, false}, context_);
+      const auto color =
+          calibration::calibrate_color({at("color"), lights.output, whole, {}, {}, false}, context_);
       if (!color) return color.error();
       contenders_.push_back({name, whole});
     }
     // What is left when lens, sensor and lights are known exactly, and only the colours are measured.
     const fs::path exact = at("cloth.weft") / "calibration";
-    const auto color = app::calibrate_color({at("color"), exact, at("exact"), {}, {}, false}, context_);
+    const auto color =
+        calibration::calibrate_color({at("color"), exact, at("exact"), {}, {}, false}, context_);
     if (!color) return color.error();
     contenders_.push_back({"exact, and its colours by the chart", at("exact")});
     return {};
@@ -204,7 +207,7 @@ class Walkthrough {
   Result<Image<float>> solved(const std::string& session, const fs::path& calibration, const char* map) {
     const fs::path folder = at(fmt::format("solve {} {}", session, calibration.filename().string()));
     const auto report =
-        app::solve_session({at(session), calibration, {}}, {.output = folder, .previews = false}, context_);
+        solve::solve_session({at(session), calibration, {}}, {.output = folder, .previews = false}, context_);
     if (!report) return report.error();
     auto image = read_image(folder / map);
     if (!image) return std::move(image).error();
@@ -225,8 +228,8 @@ class Walkthrough {
       worst.gain += one.gain / std::size(kAzimuths_deg);
       farthest = std::max(farthest, std::abs(one.gain - 1));
     }
-    const auto check =
-        app::calibrate_check({.input = at("check"), .from = calibration, .paper_delta = delta_}, context_);
+    const auto check = calibration::calibrate_check(
+        {.input = at("check"), .from = calibration, .paper_delta = delta_}, context_);
     if (!check) return check.error();
     double sheet_deg = 0, sheet_gain = 0;
     for (const Json& sheet : check->report.numbers["sheets"]) {

@@ -383,8 +383,8 @@ Result<void> write_captures(const fs::path& lights, double megapixels, double fl
   return write_file(lights / "rig.toml", rig);
 }
 
-app::CalibrateLightsOptions job_on(const fs::path& lights) {
-  app::CalibrateLightsOptions job;
+calibration::CalibrateLightsOptions job_on(const fs::path& lights) {
+  calibration::CalibrateLightsOptions job;
   job.input = lights;
   job.from = lights / "sheet1.weft" / "calibration";
   job.output = lights.parent_path() / "new";
@@ -415,7 +415,7 @@ Result<void> product_flicker(const StudyOptions& options, double percent, Rows& 
   std::set<std::string> ids;
   for (int seed = 1; seed <= seeds; ++seed) {
     const TemporaryFolder scratch;
-    const app::CalibrateLightsOptions job = job_on(scratch.path() / "lights");
+    const calibration::CalibrateLightsOptions job = job_on(scratch.path() / "lights");
     if (Result<void> ok = write_captures(job.input, kProductMegapixels, percent, seed, options.threads); !ok)
       return ok;
     const auto truth = read_calibration(job.from);
@@ -452,7 +452,7 @@ Result<void> product_flicker(const StudyOptions& options, double percent, Rows& 
 
 Result<void> time_job(const StudyOptions& options, Rows& rows) {
   const TemporaryFolder scratch;
-  const app::CalibrateLightsOptions job = job_on(scratch.path() / "lights");
+  const calibration::CalibrateLightsOptions job = job_on(scratch.path() / "lights");
   if (Result<void> ok = write_captures(job.input, options.megapixels, 0, 1, options.threads); !ok) return ok;
   std::vector<fs::path> files;
   for (int sheet = 1; sheet <= 5; ++sheet) {
@@ -464,7 +464,7 @@ Result<void> time_job(const StudyOptions& options, Rows& rows) {
   const double decode = least_seconds(1, [&] {
     parallel_for(files.size(), threads, [&](std::size_t i, int) { (void)capture::decode_raw(files[i]); });
   });
-  Result<app::CalibrateOutcome> outcome = Error{};
+  Result<calibration::CalibrateOutcome> outcome = Error{};
   const double seconds =
       least_seconds(1, [&] { outcome = calibrate_lights(job, {.threads = options.threads}); });
   if (!outcome) return outcome.error();

@@ -74,13 +74,13 @@ Result<SolvedCloth> solved_cloth(const std::filesystem::path& scene_file, Size m
   SolvedCloth cloth{Image<float>(patch->size(), 3), Image<float>(patch->size(), 3)};
   JobContext context;
   context.threads = threads;
-  const auto keep = [&](const pipeline::MapBand& band) -> Result<void> {
+  const auto keep = [&](const solve::MapBand& band) -> Result<void> {
     keep_rows(band.normal, band.rows, cloth.normal);
     keep_rows(band.albedo, band.albedo_rows, cloth.albedo);
     return {};
   };
-  const auto solved = pipeline::solve_frame(patch->photographs, *solver::find_method("standard"),
-                                            pipeline::kSolveTile, context, keep);
+  const auto solved = solve::solve_frame(patch->photographs, *solver::find_method("standard"),
+                                         solve::kSolveTile, context, keep);
   if (!solved) return solved.error();
   cloth.mean_tilt_deg = mean_tilt(cloth.normal);
   return cloth;
@@ -374,26 +374,26 @@ Result<void> make_tile(const StudyOptions& options, const TileMaps& tile) {
   return write_map_set(*cloth, kTile, kTileMmPerPixel, tile.folder());
 }
 
-double megabytes_of(const app::ExportFacts& facts) {
+double megabytes_of(const exchange::ExportFacts& facts) {
   std::uint64_t bytes = 0;
-  for (const app::ExportedTexture& each : facts.files) bytes += each.inside.empty() ? each.bytes : 0;
-  for (const app::ExportedDocument& each : facts.documents) bytes += each.bytes;
+  for (const exchange::ExportedTexture& each : facts.files) bytes += each.inside.empty() ? each.bytes : 0;
+  for (const exchange::ExportedDocument& each : facts.documents) bytes += each.bytes;
   return static_cast<double>(bytes) * 1e-6;
 }
 
 Result<Json> measure_presets(const StudyOptions& options, const TileMaps& tile, const std::string& name,
                              const std::vector<std::string>& presets) {
-  app::ExportOptions asked = {.input = tile.folder()};
+  exchange::ExportOptions asked = {.input = tile.folder()};
   asked.presets = presets;
   asked.output = tile.temporary.path() / ("of-" + name);
   Stopwatch watch;
-  const Result<std::vector<app::ExportReport>> reports =
-      app::export_maps(asked, {.threads = options.threads, .stop = {}});
+  const Result<std::vector<exchange::ExportReport>> reports =
+      exchange::export_maps(asked, {.threads = options.threads, .stop = {}});
   if (!reports) return reports.error();
   const double seconds = watch.lap();
   std::size_t files = 0;
   double megabytes = 0;
-  for (const app::ExportReport& report : *reports) {
+  for (const exchange::ExportReport& report : *reports) {
     files += report.facts.files.size();
     megabytes += megabytes_of(report.facts);
   }
@@ -425,12 +425,12 @@ Result<Rows> export_presets(const StudyOptions& options) {
 Result<Rows> export_losses(const StudyOptions& options) {
   const TileMaps tile;
   if (Result<void> ok = make_tile(options, tile); !ok) return std::move(ok).error();
-  app::ExportOptions asked = {.input = tile.folder()};
-  const Result<std::vector<app::ExportPrice>> prices =
-      app::price_exports(asked, {.threads = options.threads, .stop = {}});
+  exchange::ExportOptions asked = {.input = tile.folder()};
+  const Result<std::vector<exchange::ExportPrice>> prices =
+      exchange::price_exports(asked, {.threads = options.threads, .stop = {}});
   if (!prices) return prices.error();
   Rows rows;
-  for (const app::ExportPrice& price : *prices) {
+  for (const exchange::ExportPrice& price : *prices) {
     Json row = {{"of", price.file},         {"as", words_of(price.stored)}, {"megabytes", price.bytes * 1e-6},
                 {"seconds", price.seconds}, {"mean_deg", nullptr},          {"p95_deg", nullptr},
                 {"max_deg", nullptr},       {"albedo_mean", nullptr},       {"psnr_db", nullptr}};

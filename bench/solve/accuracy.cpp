@@ -131,10 +131,10 @@ Result<Json> file_row(Size size, int threads) {
       scene, session, {.tiles = {.threads = threads}, .stop = {}, .progress = {}});
   if (!simulated) return simulated.error();
   const JobContext context = {.threads = threads};
-  const auto solved = app::solve_session({session, {}, {}}, {}, context);
+  const auto solved = solve::solve_session({session, {}, {}}, {}, context);
   if (!solved) return solved.error();
   const auto compared =
-      app::compare_normals(solved->folder / "normal.exr", session / "truth" / "normal.exr", {});
+      material::compare_normals(solved->folder / "normal.exr", session / "truth" / "normal.exr", {});
   if (!compared) return compared.error();
   return Json{{"quality", "fast"},
               {"input", "flat, 14-bit DNG to EXR"},
@@ -270,22 +270,22 @@ Result<Truth> read_truth(const std::filesystem::path& session) {
   return Truth{std::move(*normal), std::move(*albedo)};
 }
 
-Result<pipeline::Photographs> photograph(const simulator::Scene& scene, const std::filesystem::path& folder,
-                                         const JobContext& context) {
+Result<solve::Photographs> photograph(const simulator::Scene& scene, const std::filesystem::path& folder,
+                                      const JobContext& context) {
   const auto simulated = simulator::simulate_session(
       scene, folder, {.tiles = {.threads = context.threads}, .stop = {}, .progress = {}});
   if (!simulated) return simulated.error();
-  const auto plan = app::plan_session({folder, {}, {}});
+  const auto plan = solve::plan_session({folder, {}, {}});
   if (!plan) return plan.error();
-  return app::load_photographs(*plan, context);
+  return solve::load_photographs(*plan, context);
 }
 
 // Error and time of one order of work.
-Result<Json> order_row(const pipeline::Photographs& photographs, const solver::Method& method,
+Result<Json> order_row(const solve::Photographs& photographs, const solver::Method& method,
                        const Truth& truth, const JobContext& context) {
   std::vector<float> angles;
   double albedo_error = 0, albedo_samples = 0;
-  const auto measure = [&](const pipeline::MapBand& band) -> Result<void> {
+  const auto measure = [&](const solve::MapBand& band) -> Result<void> {
     for (int y = band.rows.y0; y < band.rows.y1; ++y) {
       for (int x = 0; x < band.rows.x1; ++x) {
         const auto solved = [&](int c) {
@@ -308,13 +308,13 @@ Result<Json> order_row(const pipeline::Photographs& photographs, const solver::M
     return {};
   };
   const Result<double> measured =
-      pipeline::solve_bands(photographs, method, pipeline::kSolveTile, context, measure);
+      solve::solve_bands(photographs, method, solve::kSolveTile, context, measure);
   if (!measured) return measured.error();
   const double seconds = least_seconds(3, [&] {
-    (void)pipeline::solve_bands(photographs, method, pipeline::kSolveTile, context,
-                                [](const pipeline::MapBand&) { return Result<void>(); });
+    (void)solve::solve_bands(photographs, method, solve::kSolveTile, context,
+                             [](const solve::MapBand&) { return Result<void>(); });
   });
-  const app::NormalComparison c = app::summarize(angles);
+  const solve::NormalComparison c = solve::summarize(angles);
   return Json{{"pixels", c.pixels},
               {"mean_deg", c.mean_deg},
               {"median_deg", c.median_deg},
@@ -352,7 +352,7 @@ Result<Rows> solve_order(const StudyOptions& options) {
     scene.effects.noise = true;
     const std::filesystem::path folder = scratch.path() / (std::string(name) + ".weft");
     const JobContext context = {.threads = options.threads};
-    const Result<pipeline::Photographs> photographs = photograph(scene, folder, context);
+    const Result<solve::Photographs> photographs = photograph(scene, folder, context);
     if (!photographs) return photographs.error();
     const auto truth = read_truth(folder);
     if (!truth) return truth.error();
@@ -427,10 +427,10 @@ struct NormalError {
   double mean_deg = 0, rms_deg = 0;
 };
 
-Result<NormalError> error_of(const pipeline::Photographs& photographs, solver::Level level,
+Result<NormalError> error_of(const solve::Photographs& photographs, solver::Level level,
                              const Image<float>& truth, const JobContext& context) {
   double sum = 0, square = 0, count = 0;
-  const auto measure = [&](const pipeline::MapBand& band) -> Result<void> {
+  const auto measure = [&](const solve::MapBand& band) -> Result<void> {
     for (int y = band.rows.y0; y < band.rows.y1; ++y) {
       for (int x = 0; x < band.rows.x1; ++x) {
         const int row = y - band.rows.y0;
@@ -444,17 +444,16 @@ Result<NormalError> error_of(const pipeline::Photographs& photographs, solver::L
     }
     return {};
   };
-  const auto solved = pipeline::solve_bands(photographs, *solver::method_of(level).make(),
-                                            pipeline::kSolveTile, context, measure);
+  const auto solved =
+      solve::solve_bands(photographs, *solver::method_of(level).make(), solve::kSolveTile, context, measure);
   if (!solved) return solved.error();
   return NormalError{sum / count, std::sqrt(square / count)};
 }
 
 // The errors of some levels, in their order.
 using LevelErrors = std::vector<NormalError>;
-Result<LevelErrors> level_errors(const pipeline::Photographs& photographs,
-                                 std::span<const solver::Level> levels, const Image<float>& truth,
-                                 const JobContext& context) {
+Result<LevelErrors> level_errors(const solve::Photographs& photographs, std::span<const solver::Level> levels,
+                                 const Image<float>& truth, const JobContext& context) {
   LevelErrors errors;
   for (const solver::Level level : levels) {
     const Result<NormalError> error = error_of(photographs, level, truth, context);
@@ -466,7 +465,7 @@ Result<LevelErrors> level_errors(const pipeline::Photographs& photographs,
 
 // What a registration found, beside the cloth's displacement of shot kMoved in pixels.
 struct Finding {
-  pipeline::SessionShifts shifts;
+  solve::SessionShifts shifts;
   double dx_px = 0, dy_px = 0;
   double seconds = 0;
 
@@ -500,8 +499,8 @@ Json row_of(const Swatch& cloth, solver::Level level, const Finding& f, const No
       {"taken_back", taken_back},
       {"predicted_deg", shot.cost_deg},
       {"real_deg", std::sqrt(std::max(0.0, std::pow(alone.rms_deg, 2) - std::pow(unmoved.rms_deg, 2)))},
-      {"left_out", f.shifts.with(pipeline::ShiftVerdict::kLeftOut).size()},
-      {"flagged", f.shifts.with(pipeline::ShiftVerdict::kFlagged).size()},
+      {"left_out", f.shifts.with(solve::ShiftVerdict::kLeftOut).size()},
+      {"flagged", f.shifts.with(solve::ShiftVerdict::kFlagged).size()},
       {"seconds", f.seconds}};
 }
 
@@ -509,7 +508,7 @@ Json row_of(const Swatch& cloth, solver::Level level, const Finding& f, const No
 Result<void> add_rows(const Swatch& cloth, bool moves, std::span<const solver::Level> levels,
                       const JobContext& context, Rows& rows) {
   const TemporaryFolder scratch;
-  Result<pipeline::Photographs> cloth_shots =
+  Result<solve::Photographs> cloth_shots =
       photograph(scene_of(cloth, false), scratch.path() / "still.weft", context);
   if (!cloth_shots) return std::move(cloth_shots).error();
   const Result<LoadedImage> truth = read_image(scratch.path() / "still.weft" / "truth" / "normal.exr");
@@ -520,7 +519,7 @@ Result<void> add_rows(const Swatch& cloth, bool moves, std::span<const solver::L
   Finding finding;
   if (moves) {
     const simulator::Scene scene = scene_of(cloth, true);
-    Result<pipeline::Photographs> moved = photograph(scene, scratch.path() / "moved.weft", context);
+    Result<solve::Photographs> moved = photograph(scene, scratch.path() / "moved.weft", context);
     if (!moved) return std::move(moved).error();
     std::swap(cloth_shots->mosaics()->frames[kMoved], moved->mosaics()->frames[kMoved]);
     const simulator::ClothMovement m = simulator::movement_of_shot(
@@ -530,12 +529,12 @@ Result<void> add_rows(const Swatch& cloth, bool moves, std::span<const solver::L
   }
   const Result<LevelErrors> alone = level_errors(*cloth_shots, levels, truth->planes, context);
   if (!alone) return alone.error();
-  Result<pipeline::SessionShifts> found = pipeline::register_shots(*cloth_shots, context);
+  Result<solve::SessionShifts> found = solve::register_shots(*cloth_shots, context);
   if (!found) return std::move(found).error();
-  finding.seconds = least_seconds(3, [&] { (void)pipeline::register_shots(*cloth_shots, context); });
+  finding.seconds = least_seconds(3, [&] { (void)solve::register_shots(*cloth_shots, context); });
   finding.shifts = std::move(*found);
-  const std::vector<std::size_t> left_out = finding.shifts.with(pipeline::ShiftVerdict::kLeftOut);
-  if (Result<void> ok = pipeline::leave_out(left_out, *cloth_shots); !ok) return ok;
+  const std::vector<std::size_t> left_out = finding.shifts.with(solve::ShiftVerdict::kLeftOut);
+  if (Result<void> ok = solve::leave_out(left_out, *cloth_shots); !ok) return ok;
   const Result<LevelErrors> registered = level_errors(*cloth_shots, levels, truth->planes, context);
   if (!registered) return registered.error();
   for (std::size_t i = 0; i < levels.size(); ++i) {

@@ -69,7 +69,7 @@ double reflected(Cloth cloth, Vec3 n, Vec3 l) {
 // Puts cloth of albedo 0.4 before the lights of grey mosaics (bench/base/yardsticks.h), with photon and read
 // noise: a weave of 24 pixels a period whose slopes reach 12 degrees, seen from above. Counts are a function
 // of the pixel alone.
-void put_cloth(pipeline::Photographs& photographs, Cloth cloth, int threads) {
+void put_cloth(solve::Photographs& photographs, Cloth cloth, int threads) {
   const double seconds = 1 / 100.0;  // as grey mosaics are exposed
   for (std::size_t k = 0; k < photographs.count(); ++k) {
     RawFrame& frame = photographs.mosaics()->frames[k];
@@ -99,13 +99,13 @@ struct Timing {
   double bytes_a_pixel = 0;  ///< read and written
 };
 
-Result<Timing> time_method(const pipeline::Photographs& photographs, const solver::Method& method,
-                           int threads, const pipeline::BandOptions& options = {}) {
+Result<Timing> time_method(const solve::Photographs& photographs, const solver::Method& method, int threads,
+                           const solve::BandOptions& options = {}) {
   std::optional<Error> failure;
   const double seconds = least_seconds(kSolveRepeats, [&] {
-    const Result<double> done = pipeline::solve_bands(
-        photographs, method, pipeline::kSolveTile, {threads, {}, [](std::string_view, double) {}},
-        [](const pipeline::MapBand&) { return Result<void>(); }, options);
+    const Result<double> done = solve::solve_bands(
+        photographs, method, solve::kSolveTile, {threads, {}, [](std::string_view, double) {}},
+        [](const solve::MapBand&) { return Result<void>(); }, options);
     if (!done) failure = done.error();
   });
   if (failure) return *failure;
@@ -199,7 +199,7 @@ Result<Rows> solve_speed(const StudyOptions& options) {
   const double copy_a_byte = copy / (bare.bytes_a_pixel * pixels);
 
   const LightField field = *LightField::make(bench_lights(1, true), bench_camera(size), size, 0);
-  pipeline::Photographs photographs = grey_mosaics(field, size, threads);
+  solve::Photographs photographs = grey_mosaics(field, size, threads);
   const Result<double> unpack = unpack_seconds_a_pixel(photographs, threads);
   if (!unpack) return unpack.error();
 

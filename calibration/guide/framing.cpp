@@ -13,12 +13,10 @@
 #include "core/base/files.h"
 #include "core/rig/light_field.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::PixelPoint;
-using calibration::share_of;
 
 constexpr int kColumns = 12, kRows = 8;
 constexpr const char* kTableTags = "DICT_APRILTAG_36h11";
@@ -102,7 +100,7 @@ Result<KnownFrame> known_frame(const fs::path& folder) {
 
 Result<SeenFrame> seen_frame(const std::string& jpeg, const std::optional<KnownFrame>& known,
                              const std::optional<PrintedBoard>& board) {
-  const std::optional<Image<std::uint8_t>> picture = calibration::finder_picture(jpeg);
+  const std::optional<Image<std::uint8_t>> picture = finder_picture(jpeg);
   if (!picture) {
     return Error{ErrorKind::kProtocol, "the finder gave no picture", "live view", "it is no JPEG",
                  "ask for the next one"};
@@ -114,26 +112,26 @@ Result<SeenFrame> seen_frame(const std::string& jpeg, const std::optional<KnownF
     for (const Fiducial& each : known->fiducials) dictionaries.insert(each.dictionary);
   }
   SeenFrame seen;
-  std::vector<calibration::TagSighting> tags;
+  std::vector<TagSighting> tags;
   for (const std::string& dictionary : dictionaries) {
-    const auto found = calibration::find_tags(grey, dictionary);
+    const auto found = find_tags(grey, dictionary);
     if (!found) return found.error();
     tags.insert(tags.end(), found->begin(), found->end());
   }
-  for (const calibration::TagSighting& tag : tags) {
+  for (const TagSighting& tag : tags) {
     FramedShape& shape = seen.tags.emplace_back(FramedShape{name_of_tag(tag.dictionary, tag.id), {}});
     for (const PixelPoint& corner : tag.corners_px) shape.corners.push_back(share_of(corner, size));
   }
   if (known) {
-    if (const auto off = calibration::offsets_of(tags, size, known->camera, known->fiducials)) {
+    if (const auto off = offsets_of(tags, size, known->camera, known->fiducials)) {
       seen.off_mm = off->rms_mm;
       seen.fiducials = off->tags;
     }
   }
   if (!board) return seen;
-  const calibration::BoardSighting sighting = calibration::find_board(grey, board->board);
+  const BoardSighting sighting = find_board(grey, board->board);
   seen.corners = static_cast<int>(sighting.corners.size());
-  if (seen.corners > 2) seen.board = FramedShape{"board", calibration::outline_of(sighting.corners, size)};
+  if (seen.corners > 2) seen.board = FramedShape{"board", outline_of(sighting.corners, size)};
   return seen;
 }
 
@@ -164,4 +162,4 @@ Json json_of(const SeenFrame& seen) {
           {"corners", seen.corners}};
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -16,7 +16,7 @@
 // seen of tags and a board in the finder. Places in a picture are shares of its width and height, from its
 // upper left corner, since a finder has fewer pixels than a photograph.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// A number for each cell of the frame, row by row.
 struct FrameGrid {
@@ -26,8 +26,8 @@ struct FrameGrid {
 
 /// A tag, or a board's outline, in shares of the picture.
 struct FramedShape {
-  std::string name;                              ///< "DICT_APRILTAG_36h11 3"
-  std::vector<calibration::PixelPoint> corners;  ///< clockwise
+  std::string name;                 ///< "DICT_APRILTAG_36h11 3"
+  std::vector<PixelPoint> corners;  ///< clockwise
 };
 
 /// What a calibration knows of the frame.
@@ -64,4 +64,4 @@ Json json_of(const KnownFrame& known);
 /// {"tags", "off_mm", "fiducials", "board", "corners"}.
 Json json_of(const SeenFrame& seen);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

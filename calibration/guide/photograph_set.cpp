@@ -14,7 +14,7 @@
 #include "core/describe/field_json.h"
 #include "core/rig/calibration.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -181,4 +181,4 @@ Result<void> leave_out(const PhotographSet& set, const std::string& name, bool o
   return sync_path(to.parent_path());
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -14,7 +14,7 @@
 
 // The photographs that one step of a calibration needs, in a folder that `weft calibrate` reads as it is.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// What a set is of: the folders of docs/calibration.md.
 enum class SetPart { kBoard, kResponse, kTrap, kSheet, kChart, kCheck, kMoved };
@@ -72,4 +72,4 @@ Result<void> write_set(const PhotographSet& set);
 /// kCannotCreate where one of its name lies there.
 Result<void> leave_out(const PhotographSet& set, const std::string& name, bool out);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

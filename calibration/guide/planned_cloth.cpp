@@ -12,7 +12,7 @@
 #include "core/describe/field_json.h"
 #include "solve/report/reflectance_facts.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 using solver::Lobe;
@@ -49,8 +49,8 @@ std::optional<LobeFamily> family_called(const std::string& name) {
   return {};
 }
 
-Result<Lobe> lobe_of(const LobeCluster& cluster, const std::filesystem::path& file, double albedo) {
-  const FittedLobe& said = cluster.lobe;
+Result<Lobe> lobe_of(const solve::LobeCluster& cluster, const std::filesystem::path& file, double albedo) {
+  const solve::FittedLobe& said = cluster.lobe;
   const std::optional<LobeFamily> family = family_called(said.family);
   const bool is_of_two = family == LobeFamily::kTwoGgx;
   const char* missing = !said.alpha                           ? "alpha"
@@ -99,9 +99,10 @@ std::vector<std::string> planned_cloth_names() {
 Result<NamedCloth> cloth_of_reflectance(const std::filesystem::path& file, std::optional<double> albedo) {
   Result<Json> document = read_json(file, "weft.reflectance", 1);
   if (!document) return std::move(document).error();
-  const Result<ReflectanceFacts> facts = read_fields<ReflectanceFacts>(*document, file.string());
+  const Result<solve::ReflectanceFacts> facts =
+      read_fields<solve::ReflectanceFacts>(*document, file.string());
   if (!facts) return facts.error();
-  const auto cluster = std::ranges::find(facts->clusters, true, &LobeCluster::is_observable);
+  const auto cluster = std::ranges::find(facts->clusters, true, &solve::LobeCluster::is_observable);
   if (cluster == facts->clusters.end()) return not_a_lobe(file, "the solve called nothing observable");
   const double of_pixels = albedo.value_or(kUnknownAlbedo);
   const Result<Lobe> lobe = lobe_of(*cluster, file, of_pixels);
@@ -109,4 +110,4 @@ Result<NamedCloth> cloth_of_reflectance(const std::filesystem::path& file, std::
   return cloth_by(name_of(lobe->family), *lobe, of_pixels, cluster->weft_share.value_or(0));
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

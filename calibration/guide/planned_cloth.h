@@ -9,7 +9,7 @@
 #include "core/base/result.h"
 #include "solver/light_plan/light_plan.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// A cloth that lights are planned for.
 struct NamedCloth {
@@ -25,4 +25,4 @@ std::vector<std::string> planned_cloth_names();
 /// over the albedo takes `albedo`. kBadData where nothing was observable.
 Result<NamedCloth> cloth_of_reflectance(const std::filesystem::path& file, std::optional<double> albedo);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

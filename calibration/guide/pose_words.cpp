@@ -7,15 +7,13 @@
 #include <cmath>
 #include <numbers>
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
-
-using calibration::PixelPoint;
 
 constexpr double kLifted_mm = 5;
 constexpr double kBeside = 0.08;  // of the frame: less is the middle
 
-PixelPoint centre_of(const calibration::BoardPose& pose) {
+PixelPoint centre_of(const BoardPose& pose) {
   PixelPoint centre;
   for (const PixelPoint& p : pose.outline_px) centre.x += p.x / 4, centre.y += p.y / 4;
   return centre;
@@ -41,7 +39,7 @@ std::string edge_towards(PixelPoint from, PixelPoint to) {
 
 }  // namespace
 
-std::string words_of(const calibration::BoardPose& pose, const CameraModel& camera) {
+std::string words_of(const BoardPose& pose, const CameraModel& camera) {
   const PixelPoint centre = centre_of(pose);
   std::string words = pose.tilt_deg > 0 ? fmt::format("tilt the board by {:.0f} degrees, raising its {}, ",
                                                       pose.tilt_deg, edge_towards(centre, pose.raised_px))
@@ -52,4 +50,4 @@ std::string words_of(const calibration::BoardPose& pose, const CameraModel& came
   return words;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -5,10 +5,10 @@
 
 #include "calibration/camera/guidance.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// "tilt the board by 30 degrees, raising its left edge, at the upper right of the picture": what a person
 /// does who looks at the camera's picture.
-std::string words_of(const calibration::BoardPose& pose, const CameraModel& camera);
+std::string words_of(const BoardPose& pose, const CameraModel& camera);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,4 +110,4 @@ std::vector<capture::SeriesShot> series_of(const SetStep& step, int leds,
   return shots;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -13,7 +13,7 @@
 
 // Series that nobody has a hand in: pairs of photographs alike, at several exposures.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// Steps of the parts response (lit, then dark) and trap.
 Result<SetStanding> look_at_series(const PhotographSet& set);
@@ -25,4 +25,4 @@ std::vector<std::string> complete_series(const std::filesystem::path& sets);
 std::vector<capture::SeriesShot> series_of(const SetStep& step, int leds,
                                            const std::function<double(double share)>& share_of_us);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -14,7 +14,7 @@
 #include "core/rig/camera.h"
 #include "report/hemisphere.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -411,4 +411,4 @@ std::string picture_of(const RigPlan& plan) {
   return report::hemisphere_svg(drawing);
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

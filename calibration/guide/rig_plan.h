@@ -13,7 +13,7 @@
 #include "core/base/result.h"
 #include "solver/light_plan/best_place.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 struct RigPlanOptions {
   std::filesystem::path rig;  ///< a rig file, or the folder of a calibration
@@ -56,4 +56,4 @@ Json json_of(const RigPlan& plan);
 /// The hemisphere of places as SVG.
 std::string picture_of(const RigPlan& plan);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 constexpr double kUsualF0 = 0.04;
@@ -59,4 +59,4 @@ void describe(Fields& fields, RigPlanRequest& r) {
                r.picture);
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

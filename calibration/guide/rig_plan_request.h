@@ -9,7 +9,7 @@
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// What `weft rig plan` and a job that plans lights are told.
 struct RigPlanRequest {
@@ -24,4 +24,4 @@ struct RigPlanRequest {
 };
 void describe(Fields& fields, RigPlanRequest& request);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

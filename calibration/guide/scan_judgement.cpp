@@ -15,10 +15,8 @@
 #include "capture/scan/histogram.h"
 #include "core/rig/calibration.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
-
-using calibration::ChartSide;
 
 /// A lamp whose light is subtracted still flickers, and takes a share of the counts.
 constexpr double kMostRoom = 0.05;
@@ -71,13 +69,13 @@ std::string lamp_in(const Session& session) {
 }
 
 std::string unevenness_of(const Session& session, const CameraModel& camera, const TaggedSheet& sheet,
-                          const calibration::SheetPose& pose) {
+                          const SheetPose& pose) {
   int lit = 0;
   for (const Shot& shot : session.shots) {
     if (shot.role != ShotRole::kLit || shot.superseded_by || lit++ % kEachOf != 0) continue;
     const Result<RawFrame> frame = capture::decode_raw(session.path_of(shot));
     if (!frame) return frame.error().message();
-    const auto uneven = calibration::find_unevenness(*frame, camera, sheet.sheet, pose.rig_from_sheet);
+    const auto uneven = find_unevenness(*frame, camera, sheet.sheet, pose.rig_from_sheet);
     if (!uneven) continue;
     return fmt::format(
         "the paper is not smooth: under LED {} it is {:.0f} percent {} around ({:.0f}, {:.0f}) than "
@@ -92,16 +90,16 @@ ChartLook look_at_chart_scan(const Session& session, const std::filesystem::path
                              const std::filesystem::path& from) {
   const Result<Image<float>> picture = lit_picture(session, from);
   if (!picture) return {picture.error().message(), ""};
-  const auto corners = calibration::find_chart(*picture);
+  const auto corners = find_chart(*picture);
   if (!corners) return {"no chart was found in the picture: " + corners.error().why, ""};
   const Size size = picture->size();
   std::vector<std::array<double, 2>> outline;
   for (const auto& [x, y] : *corners) outline.push_back({(x + 0.5) / size.width, (y + 0.5) / size.height});
-  const auto patches = calibration::read_patches(*picture, *corners);
+  const auto patches = read_patches(*picture, *corners);
   if (!patches) return {patches.error().message(), "", outline};
   const Result<ChartColors> colors = read_chart_colors(set);
   if (!colors) return {colors.error().message(), "", outline};
-  const ChartSide side = calibration::side_of(*patches, colors->reference);
+  const ChartSide side = side_of(*patches, colors->reference);
   if (side == ChartSide::kMirrored)
     return {"the chart is mirrored: its columns or rows run backwards", "", outline};
   if (side == ChartSide::kNoChart)
@@ -111,4 +109,4 @@ ChartLook look_at_chart_scan(const Session& session, const std::filesystem::path
   return {"", is_turned ? "it lies upside down, and is read so" : "", outline};
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -13,14 +13,14 @@
 
 // What can be wrong with a scan for a calibration and is seen without solving it.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// Why the room is too bright, from the dark photograph; empty: it is dark, or nobody photographed it so.
 std::string lamp_in(const Session& session);
 
 /// Why a sheet's paper is not smooth, by every third LED's photograph; empty: it is.
 std::string unevenness_of(const Session& session, const CameraModel& camera, const TaggedSheet& sheet,
-                          const calibration::SheetPose& pose);
+                          const SheetPose& pose);
 
 /// What a chart's scan shows of how it lies.
 struct ChartLook {
@@ -35,4 +35,4 @@ struct ChartLook {
 ChartLook look_at_chart_scan(const Session& session, const std::filesystem::path& set,
                              const std::filesystem::path& from);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -23,13 +23,10 @@
 #include "core/base/statistics.h"
 #include "core/rig/session.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::BoardGuidance;
-using calibration::BoardPose;
-using calibration::BoardView;
 
 constexpr double kTooAlike = 0.7;      // calibration::BoardGuidance::alike
 constexpr double kMostMisfit = 2.5;    // times the median residual of the others
@@ -86,13 +83,13 @@ Result<CameraModel> camera_known_before(const PhotographSet& set) {
                "the calibration has no camera", "name one that has, be it from a data sheet"};
 }
 
-Json json_of(const calibration::PixelPoint& p) {
+Json json_of(const PixelPoint& p) {
   return {std::round(10 * p.x) / 10, std::round(10 * p.y) / 10};
 }
 
 Json json_of(const BoardPose& pose, Size size) {
   Json outline_px = Json::array(), outline = Json::array();
-  for (const calibration::PixelPoint& p : pose.outline_px) {
+  for (const PixelPoint& p : pose.outline_px) {
     outline_px.push_back(json_of(p));
     outline.push_back({(p.x + 0.5) / size.width, (p.y + 0.5) / size.height});
   }
@@ -105,7 +102,7 @@ Json json_of(const BoardPose& pose, Size size) {
           {"outline", std::move(outline)}};
 }
 
-Json json_of(const calibration::LensForecast& forecast) {
+Json json_of(const LensForecast& forecast) {
   return {{"focal_percent", forecast.focal_percent}, {"place_mm", forecast.place_mm}};
 }
 
@@ -154,15 +151,15 @@ SetPhotograph judged(const BoardPhotograph& board, Size size) {
 }
 
 /// What the guidance found, of the set and of each photograph that was viewed.
-void tell(const BoardGuidance& guidance, const calibration::GuidanceOptions& asked,
-          const std::vector<std::size_t>& viewed, SetStanding& standing) {
+void tell(const BoardGuidance& guidance, const GuidanceOptions& asked, const std::vector<std::size_t>& viewed,
+          SetStanding& standing) {
   for (std::size_t i = 0; i < viewed.size(); ++i) {
     Json& facts = standing.photographs[viewed[i]].facts;
     facts["rms_px"] = guidance.residuals_px[i];
     if (guidance.alike[i] > kTooAlike) facts["note"] = "it is much like one before and adds little";
   }
   Json arrows = Json::array();
-  for (const calibration::PixelPoint& p : guidance.mean_residual_px)
+  for (const PixelPoint& p : guidance.mean_residual_px)
     arrows.push_back({std::round(1000 * p.x) / 1000, std::round(1000 * p.y) / 1000});
   judge_residuals(viewed, guidance, standing);
   standing.figures = {
@@ -191,12 +188,12 @@ Result<KnownCamera> camera_before_boards(const PhotographSet& set,
   if (!set.from.empty()) {
     const Result<CameraModel> camera = camera_known_before(set);
     if (!camera) return camera.error();
-    return KnownCamera{*camera, calibration::GuidanceOptions().start_focal_sigma};
+    return KnownCamera{*camera, GuidanceOptions().start_focal_sigma};
   }
   constexpr double kUsualLens = 2, kUsualSigma = 0.5;  // focal length over the frame's width
   for (const BoardPhotograph* each : boards) {
     if (!each->left_out.empty() || each->sighting.corners.size() < 2) continue;
-    const calibration::BoardCorner &a = each->sighting.corners.front(), &b = each->sighting.corners.back();
+    const BoardCorner &a = each->sighting.corners.front(), &b = each->sighting.corners.back();
     const double mm_per_pixel =
         std::hypot(b.u_mm - a.u_mm, b.v_mm - a.v_mm) / std::hypot(b.px.x - a.px.x, b.px.y - a.px.y);
     const double height_mm = kUsualLens * each->size.width * mm_per_pixel;
@@ -243,11 +240,11 @@ Result<SetStanding> SetGuide::look_at_boards(const PhotographSet& set) {
     viewed.push_back(standing.photographs.size() - 1);
     views.push_back({board->name, board->sighting.corners});
   }
-  calibration::GuidanceOptions asked;
+  GuidanceOptions asked;
   asked.start_focal_sigma = start->focal_sigma;
   if (!views.empty() || !set.from.empty()) {
     const BoardGuidance guidance =
-        calibration::guide_board(printed->board, printed->thickness_mm, start->camera, views, table, asked);
+        guide_board(printed->board, printed->thickness_mm, start->camera, views, table, asked);
     tell(guidance, asked, viewed, standing);
     if (guidance.next) standing.next = step_to(set, guidance);
   }
@@ -287,8 +284,7 @@ std::span<const WantedSheet> wanted_by(SetPart part) {
 }
 
 /// Where a sheet lies that the first lit frame of a session shows.
-Result<calibration::SheetPose> sheet_in(const fs::path& folder, const TaggedSheet& sheet,
-                                        const CameraModel& camera) {
+Result<SheetPose> sheet_in(const fs::path& folder, const TaggedSheet& sheet, const CameraModel& camera) {
   const Result<Session> session = read_session(folder);
   if (!session) return session.error();
   const auto lit = std::ranges::find_if(
@@ -298,22 +294,22 @@ Result<calibration::SheetPose> sheet_in(const fs::path& folder, const TaggedShee
   }
   const Result<RawFrame> frame = capture::decode_raw(session->path_of(*lit));
   if (!frame) return frame.error();
-  const Image<std::uint8_t> grey = calibration::grey_picture(*frame);
+  const Image<std::uint8_t> grey = grey_picture(*frame);
   std::set<std::string> dictionaries;
-  for (const calibration::SheetTag& tag : sheet.tags) dictionaries.insert(tag.dictionary);
-  std::vector<calibration::TagSighting> sightings;
+  for (const SheetTag& tag : sheet.tags) dictionaries.insert(tag.dictionary);
+  std::vector<TagSighting> sightings;
   for (const std::string& dictionary : dictionaries) {
-    const auto found = calibration::find_tags(grey.plane(), dictionary);
+    const auto found = find_tags(grey.plane(), dictionary);
     if (!found) return found.error();
     sightings.insert(sightings.end(), found->begin(), found->end());
   }
-  return calibration::sheet_pose(camera, sightings, sheet.tags, folder.filename().string());
+  return sheet_pose(camera, sightings, sheet.tags, folder.filename().string());
 }
 
 SetPhotograph judged(const fs::path& folder, const TaggedSheet& sheet, const CameraModel& camera) {
   SetPhotograph photograph;
   photograph.name = folder.filename().string();
-  const Result<calibration::SheetPose> pose = sheet_in(folder, sheet, camera);
+  const Result<SheetPose> pose = sheet_in(folder, sheet, camera);
   if (!pose) {
     photograph.is_used = false;
     photograph.why = pose.error().message();
@@ -486,4 +482,4 @@ Json json_of(const SetStanding& standing) {
           {"done", standing.is_done}};
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -13,7 +13,7 @@
 
 // What a set shows so far, and what a person does next.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// A photograph or a session of a set, as it is judged.
 struct SetPhotograph {
@@ -72,4 +72,4 @@ Json json_of(const SetStep& step);
 /// {"photographs", "figures", "next", "done"}.
 Json json_of(const SetStanding& standing);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

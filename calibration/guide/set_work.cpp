@@ -15,7 +15,7 @@
 #include "core/base/files.h"
 #include "core/rig/calibration.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -134,4 +134,4 @@ Result<void> take_step(PhotographSet& set, const SetStep& step, const capture::R
   return scanned ? Result<void>() : scanned.error();
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

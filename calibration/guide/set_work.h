@@ -8,7 +8,7 @@
 #include "capture/scan/scan.h"
 #include "core/base/result.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// The LEDs by which a board is photographed: LED 1 and the one across from it, for even light; LED 1 alone
 /// where nobody knows where they are.
@@ -20,4 +20,4 @@ Result<void> take_step(PhotographSet& set, const SetStep& step, const capture::R
                        capture::Lamps& lamps, capture::Camera& camera, const capture::ScanEvents& events,
                        const capture::ScanControl& control);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 constexpr WalkStage kProof = {.result = kWalkCheck,
@@ -94,4 +94,4 @@ Json json_of_walks() {
   return {{"all", json_of(kAll)}, {"refresh", json_of(kRefresh)}};
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

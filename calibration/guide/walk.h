@@ -8,7 +8,7 @@
 
 // Ways from photographs to a calibration that the rig scans with, as weft calibrate and the page walk them.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// Photographs, and what is made of them.
 struct WalkStage {
@@ -34,4 +34,4 @@ std::span<const WalkStage> walk_of_refresh();
 /// {"all": [{"result", "part", ...}], "refresh": [...]}
 Json json_of_walks();
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -16,7 +16,7 @@
 #include "capture/rig.h"
 #include "core/base/files.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -113,8 +113,7 @@ Result<CalibrationChange> change_between(const fs::path& from, const fs::path& t
   const auto* new_lights = std::get_if<NearLights>(&*after->lights);
   const bool are_comparable = before->camera && old_lights != nullptr && new_lights != nullptr &&
                               old_lights->leds.size() == new_lights->leds.size();
-  if (are_comparable)
-    change.maps = calibration::cost_of(*before->camera, *old_lights, *after->camera, *new_lights);
+  if (are_comparable) change.maps = cost_of(*before->camera, *old_lights, *after->camera, *new_lights);
   return change;
 }
 
@@ -172,4 +171,4 @@ Result<void> name_calibration(const fs::path& rig_file, const fs::path& calibrat
                fmt::format("write calibration = \"{}\" under [scan] by hand", folder.string())};
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -11,13 +11,13 @@
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// What becomes different where a rig scans by one calibration in the place of another.
 struct CalibrationChange {
   /// The error of maps, as far as both calibrations know camera and near lights: the old one's if the new one
   /// is right.
-  std::optional<calibration::MovementCost> maps;
+  std::optional<MovementCost> maps;
   std::vector<std::string> gained, lost;  ///< parts that only one of them has: "camera", "color"
   std::string old_id, new_id;
   std::string warning;  ///< that nobody checked the new one, or that it did not pass; empty: it did
@@ -40,4 +40,4 @@ std::vector<std::string> words_of(const CalibrationChange& change);
 Result<void> name_calibration(const std::filesystem::path& rig_file,
                               const std::filesystem::path& calibration);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

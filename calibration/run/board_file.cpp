@@ -10,7 +10,7 @@
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,14 +26,14 @@ void describe_board(Fields& fields, BoardSettings& b, const char* kind) {
                 .says = "What is printed; default that of board.toml",
                 .words = {"charuco", "checkerboard"}},
                b.kind);
-  fields.value({"squares_x", "Squares a row", calibration::kBoardSquares}, b.squares_x);
-  fields.value({"squares_y", "Squares a column", calibration::kBoardSquares}, b.squares_y);
+  fields.value({"squares_x", "Squares a row", kBoardSquares}, b.squares_x);
+  fields.value({"squares_y", "Squares a column", kBoardSquares}, b.squares_y);
   fields.value({.name = "square_mm",
                 .says = "Side of a square, mm",
-                .range = calibration::kBoardSquare_mm,
+                .range = kBoardSquare_mm,
                 .option = "--square-mm"},
                b.square_mm);
-  fields.value({"marker_share", "ChArUco: side of a marker over that of a square", calibration::kMarkerShare},
+  fields.value({"marker_share", "ChArUco: side of a marker over that of a square", kMarkerShare},
                b.marker_share);
   fields.value({"dictionary", "ChArUco: as OpenCV names it, DICT_5X5_100"}, b.dictionary);
   fields.value({.name = "thickness_mm",
@@ -75,9 +75,8 @@ Result<PrintedBoard> read_board_file(const fs::path& file, const BoardSettings& 
   const Result<BoardSettings> said = settings_of(file, options);
   if (!said) return said.error();
   PrintedBoard out;
-  calibration::Board& board = out.board;
-  board.kind = said->kind.value_or("charuco") == "charuco" ? calibration::BoardKind::kCharuco
-                                                           : calibration::BoardKind::kCheckerboard;
+  Board& board = out.board;
+  board.kind = said->kind.value_or("charuco") == "charuco" ? BoardKind::kCharuco : BoardKind::kCheckerboard;
   if (!said->squares_x) return bad_key(file, "squares_x", "it is missing");
   if (!said->squares_y) return bad_key(file, "squares_y", "it is missing");
   if (!said->square_mm) return bad_key(file, "square_mm", "it is missing");
@@ -91,4 +90,4 @@ Result<PrintedBoard> read_board_file(const fs::path& file, const BoardSettings& 
   return out;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

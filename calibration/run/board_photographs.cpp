@@ -15,11 +15,10 @@
 #include "core/image_io/linear_image.h"
 #include "core/rig/suits.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::BoardFault;
 
 constexpr double kMostBlur = 1.7;   // times the median
 constexpr double kMostFull = 0.02;  // of a board's photosites
@@ -128,18 +127,18 @@ Result<Picture> read_picture(const fs::path& file, Size size) {
         read_linear_image(file, Transfer::kAuto, Clipped::kKeep, NotNumbers::kMark);
     if (!image) return image.error();
     const std::array<View<const float>, 3> rgb = {image->plane(0), image->plane(1), image->plane(2)};
-    return Picture{calibration::grey_picture(rgb), {}};
+    return Picture{grey_picture(rgb), {}};
   }
   Result<RawFrame> frame = capture::decode_raw(file, {.size = size});
   if (!frame) return std::move(frame).error();
-  Image<std::uint8_t> grey = calibration::grey_picture(*frame);
+  Image<std::uint8_t> grey = grey_picture(*frame);
   return Picture{std::move(grey), std::move(*frame)};
 }
 
 /// Share of the photosites among a board's corners that the light has filled.
-double full_share(const RawFrame& frame, const calibration::BoardSighting& board) {
-  const auto across = [](const calibration::BoardCorner& c) { return c.px.x; };
-  const auto down = [](const calibration::BoardCorner& c) { return c.px.y; };
+double full_share(const RawFrame& frame, const BoardSighting& board) {
+  const auto across = [](const BoardCorner& c) { return c.px.x; };
+  const auto down = [](const BoardCorner& c) { return c.px.y; };
   const auto [left, right] = std::ranges::minmax(board.corners, {}, across);
   const auto [top, bottom] = std::ranges::minmax(board.corners, {}, down);
   const auto [width, height] = frame.counts.size();
@@ -161,8 +160,8 @@ Result<void> look_at(const fs::path& file, const BoardFolderOptions& options, Bo
     return {};
   }
   const View<const std::uint8_t> grey = picture->grey.plane();
-  photograph.sighting = calibration::find_board(grey, options.board, options.limits);
-  const calibration::BoardSighting& sighting = photograph.sighting;
+  photograph.sighting = find_board(grey, options.board, options.limits);
+  const BoardSighting& sighting = photograph.sighting;
   if (sighting.fault != BoardFault::kNone) {
     photograph.left_out = fmt::format("{}: {}", name_of(sighting.fault), sighting.why);
   } else if (const double full = picture->raw ? full_share(*picture->raw, sighting) : 0; full > kMostFull) {
@@ -172,12 +171,12 @@ Result<void> look_at(const fs::path& file, const BoardFolderOptions& options, Bo
         100 * full);
   }
   if (!photograph.of_table) return {};
-  auto tags = calibration::find_tags(grey, options.tag_dictionary);
+  auto tags = find_tags(grey, options.tag_dictionary);
   if (!tags) return tags.error();
-  const bool share_dictionary = options.board.kind == calibration::BoardKind::kCharuco &&
-                                options.board.dictionary == options.tag_dictionary;
+  const bool share_dictionary =
+      options.board.kind == BoardKind::kCharuco && options.board.dictionary == options.tag_dictionary;
   const int first_id = share_dictionary ? options.board.squares_x * options.board.squares_y / 2 : 0;
-  std::erase_if(*tags, [&](const calibration::TagSighting& tag) { return tag.id < first_id; });
+  std::erase_if(*tags, [&](const TagSighting& tag) { return tag.id < first_id; });
   photograph.tags = std::move(*tags);
   return {};
 }
@@ -230,4 +229,4 @@ Result<BoardPhotographs> read_board_photographs(const BoardFolderOptions& option
   return all;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -18,7 +18,7 @@
 
 // A folder of photographs of a board: which can be used, and what they show.
 
-namespace weft::app {
+namespace weft::calibration {
 
 inline constexpr NumberRange kBoardThickness_mm = {0, 100};
 
@@ -37,7 +37,7 @@ void describe(Fields& fields, BoardDescription& board);
 
 /// A board that lies on something.
 struct PrintedBoard {
-  calibration::Board board;
+  Board board;
   double thickness_mm = 0;
 };
 
@@ -51,9 +51,9 @@ struct BoardPhotograph {
   bool of_table = false;  ///< its name starts with "table"
   ShotMetadata shot;      ///< empty of a developed photograph
   Size size;
-  calibration::BoardSighting sighting;
-  std::vector<calibration::TagSighting> tags;  ///< of photographs of the table, without the board's own
-  std::string left_out;                        ///< why it is not used; empty: it is
+  BoardSighting sighting;
+  std::vector<TagSighting> tags;  ///< of photographs of the table, without the board's own
+  std::string left_out;           ///< why it is not used; empty: it is
 };
 
 /// All photographs of a folder.
@@ -66,9 +66,9 @@ struct BoardPhotographs {
 /// What is looked for in a folder of photographs.
 struct BoardFolderOptions {
   std::filesystem::path folder;
-  calibration::Board board;
+  Board board;
   std::string tag_dictionary = "DICT_APRILTAG_36h11";
-  calibration::BoardLimits limits = {};
+  BoardLimits limits = {};
   /// The camera they must be of; without one that of most photographs.
   std::optional<CalibrationSubject> subject = {};
   std::optional<Size> size = {};  ///< of its frames; without it that of most photographs
@@ -85,4 +85,4 @@ Result<BoardPhotograph> read_board_photograph(const std::filesystem::path& file,
 /// for a folder that is not there or holds none; all are left out where none is of `subject` and `size`.
 Result<BoardPhotographs> read_board_photographs(const BoardFolderOptions& options, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -20,14 +20,10 @@
 #include "core/describe/field_check.h"
 #include "core/image_io/linear_image.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::BoardEdge;
-using calibration::BoardView;
-using calibration::LensFit;
-using calibration::TagSighting;
 
 constexpr double kMostScatter_px = 1;  // of a tag's corner over the photographs of the table
 
@@ -73,7 +69,7 @@ std::vector<Fiducial> fiducials_of(const BoardPhotographs& all, const CameraMode
   }
   std::vector<Fiducial> fiducials;
   for (const auto& [name, sightings] : seen) {
-    const std::array<calibration::PixelPoint, 4>& first = sightings.front().corners_px;
+    const std::array<PixelPoint, 4>& first = sightings.front().corners_px;
     const bool was_moved = std::any_of(sightings.begin(), sightings.end(), [&](const TagSighting& tag) {
       return std::hypot(tag.corners_px[0].x - first[0].x, tag.corners_px[0].y - first[0].y) > kMostScatter_px;
     });
@@ -109,7 +105,7 @@ CalibrationSubject subject_of(const CalibrateCameraOptions& options, const std::
 }
 
 // The edges of the board as each colour shows them, in the raw photographs that the lens was fitted to.
-Result<std::vector<BoardEdge>> edges_of(const fs::path& folder, const calibration::Board& board,
+Result<std::vector<BoardEdge>> edges_of(const fs::path& folder, const Board& board,
                                         std::span<const BoardView> views, const LensFit& fit,
                                         const JobContext& context) {
   std::vector<std::vector<BoardEdge>> found(views.size());
@@ -118,7 +114,7 @@ Result<std::vector<BoardEdge>> edges_of(const fs::path& folder, const calibratio
     if (!fit.boards[i].used || is_linear_image(file)) return {};
     const Result<RawFrame> frame = capture::decode_raw(file, {.size = fit.camera.size});
     if (!frame) return frame.error();
-    found[i] = calibration::find_edges(*frame, fit.camera, fit.boards[i].rig_from_board, board);
+    found[i] = find_edges(*frame, fit.camera, fit.boards[i].rig_from_board, board);
     return {};
   };
   if (Result<void> ok = for_each_frame(views.size(), context, look); !ok) return std::move(ok).error();
@@ -175,12 +171,11 @@ Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options,
   for (const std::size_t i : *viewed)
     views.push_back({all->photographs[i].name, all->photographs[i].sighting.corners});
 
-  const Result<LensFit> fit =
-      calibration::fit_lens(views, all->size,
-                            {.table = 0,
-                             .thickness_mm = board->thickness_mm,
-                             .least_boards = static_cast<std::size_t>(options.least_boards),
-                             .most_focal_sigma = options.most_focal_percent / 100});
+  const Result<LensFit> fit = fit_lens(views, all->size,
+                                       {.table = 0,
+                                        .thickness_mm = board->thickness_mm,
+                                        .least_boards = static_cast<std::size_t>(options.least_boards),
+                                        .most_focal_sigma = options.most_focal_percent / 100});
   if (!fit) return with_names(fit.error(), *all);
   const Result<std::vector<BoardEdge>> edges = edges_of(options.input, board->board, views, *fit, context);
   if (!edges) return edges.error();
@@ -191,8 +186,8 @@ Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options,
   change.subject = subject_of(options, from, all->camera);
   change.camera = fit->camera;
   change.camera_covariance = fit->covariance;
-  change.spread = calibration::median_spread(*edges);
-  const std::optional<calibration::LateralFit> lateral = calibration::fit_lateral_color(*edges, fit->camera);
+  change.spread = median_spread(*edges);
+  const std::optional<LateralFit> lateral = fit_lateral_color(*edges, fit->camera);
   if (lateral) change.lateral = lateral->color;
   change.fiducials = fiducials_of(*all, fit->camera, outcome.warnings);
   if (from && !from->patches.empty()) {
@@ -212,4 +207,4 @@ Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options,
   return outcome;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

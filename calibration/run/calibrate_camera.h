@@ -10,7 +10,7 @@
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 struct CalibrateCameraOptions {
   /// Folder of photographs of one board; those named table... show it on the table.
@@ -35,4 +35,4 @@ void describe(Fields& fields, CalibrateCameraOptions& options);
 /// table can be used; kCannotCreate where `output` is there. Then nothing is written.
 Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -16,14 +16,10 @@
 #include "core/rig/color_transform.h"
 #include "core/rig/suits.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::ChartLight;
-using calibration::ChartSample;
-using calibration::ChartSide;
-using calibration::PatchReading;
 
 constexpr double kFullShareOfPatch = 0.01;  // of a patch's pixels
 constexpr double kUneven = 0.12;            // of a patch's light
@@ -40,8 +36,8 @@ constexpr int kFirstGrey = 19, kLastGrey = 22;  // neutral 8 to neutral 3.5
 
 // One picture's patches, balanced and with its light taken out; of patches that cannot be used camera is 0.
 struct FlatChart {
-  std::array<Rgb, calibration::kChartPatches> camera = {};
-  std::array<bool, calibration::kChartPatches> is_good = {};
+  std::array<Rgb, kChartPatches> camera = {};
+  std::array<bool, kChartPatches> is_good = {};
   std::array<double, 3> gain = {1, 1, 1};  // of the greys, over green: taken out of `camera`
   double scale = 1;
   double slope_of_light = 0;
@@ -50,7 +46,7 @@ struct FlatChart {
 std::string names_of(const std::vector<int>& patches) {
   std::string names;
   for (const int p : patches) {
-    names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", p + 1, calibration::patch_name(p));
+    names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", p + 1, patch_name(p));
   }
   return names;
 }
@@ -61,8 +57,8 @@ Error bad_chart(const ChartPicture& picture, std::string what, std::string why, 
 
 class ChartReader {
  public:
-  ChartReader(const CalibrateColorOptions& options, const calibration::ChartReference& reference,
-              ColorMeasurement& out, std::vector<std::string>& warnings)
+  ChartReader(const CalibrateColorOptions& options, const ChartReference& reference, ColorMeasurement& out,
+              std::vector<std::string>& warnings)
       : options_(options), reference_(reference), out_(out), warnings_(warnings) {}
 
   Result<FlatChart> read(const ChartPicture& picture) {
@@ -89,7 +85,7 @@ class ChartReader {
 
   // The patches of the upright chart.
   Result<std::vector<PatchReading>> find_patches(const ChartPicture& picture) {
-    calibration::ChartCorners corners = {};
+    ChartCorners corners = {};
     if (!options_.corners_px.empty()) {
       for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t k = 0; k < 2; ++k) {
@@ -97,7 +93,7 @@ class ChartReader {
         }
       }
     } else {
-      const auto found = calibration::find_chart(picture.rgb);
+      const auto found = find_chart(picture.rgb);
       if (!found) {
         Error error = found.error();
         error.where = picture.source.string();
@@ -105,7 +101,7 @@ class ChartReader {
       }
       corners = *found;
     }
-    Result<std::vector<PatchReading>> patches = calibration::read_patches(picture.rgb, corners);
+    Result<std::vector<PatchReading>> patches = read_patches(picture.rgb, corners);
     if (!patches) {
       Error error = patches.error();
       error.where = picture.source.string();
@@ -113,10 +109,10 @@ class ChartReader {
     }
     const auto full = std::count_if(patches->begin(), patches->end(),
                                     [](const PatchReading& p) { return p.full_share > kFullShareOfPatch; });
-    if (full > calibration::kChartPatches - static_cast<int>(kFewestPatches)) {
+    if (full > kChartPatches - static_cast<int>(kFewestPatches)) {
       return bad_chart(picture, "too many patches are full", fmt::format("{} of 24", full), kExposeWhite);
     }
-    const ChartSide side = calibration::side_of(*patches, reference_);
+    const ChartSide side = side_of(*patches, reference_);
     if (side == ChartSide::kUpright) {
       const bool lies_turned = corners[1][0] < corners[0][0];
       if (lies_turned) {
@@ -148,7 +144,7 @@ class ChartReader {
   Result<void> choose(const ChartPicture& picture, const std::vector<PatchReading>& patches,
                       FlatChart& chart) {
     std::vector<int> full, uneven;
-    for (int i = 0; i < calibration::kChartPatches; ++i) {
+    for (int i = 0; i < kChartPatches; ++i) {
       const auto at = static_cast<std::size_t>(i);
       const PatchReading& p = patches[at];
       chart.camera[at] = p.mean;
@@ -211,7 +207,7 @@ class ChartReader {
   Result<void> take_light_out(const ChartPicture& picture, FlatChart& chart) {
     std::vector<int> numbers;
     const std::vector<ChartSample> samples = samples_of(chart, reference_, numbers);
-    const Result<std::vector<double>> light = calibration::light_of_each(samples);
+    const Result<std::vector<double>> light = light_of_each(samples);
     if (!light) return light.error();
     std::vector<int> shaded;
     double darkest = 1;
@@ -226,8 +222,7 @@ class ChartReader {
                                    100 * darkest),
                        "move what stands between lamp and chart, or turn the chart");
     }
-    const auto fit =
-        calibration::fit_color(samples, picture.is_albedo ? ChartLight::kEven : ChartLight::kShaded, false);
+    const auto fit = fit_color(samples, picture.is_albedo ? ChartLight::kEven : ChartLight::kShaded, false);
     if (!fit) return fit.error();
     chart.scale = fit->scale;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -245,24 +240,22 @@ class ChartReader {
   }
 
  public:
-  static std::vector<ChartSample> samples_of(const FlatChart& chart,
-                                             const calibration::ChartReference& reference,
+  static std::vector<ChartSample> samples_of(const FlatChart& chart, const ChartReference& reference,
                                              std::vector<int>& numbers) {
     std::vector<ChartSample> samples;
-    for (int i = 0; i < calibration::kChartPatches; ++i) {
+    for (int i = 0; i < kChartPatches; ++i) {
       const auto at = static_cast<std::size_t>(i);
       if (!chart.is_good[at]) continue;
       numbers.push_back(i);
-      samples.push_back({chart.camera[at], reference[at],
-                         2.0 * (i % calibration::kChartColumns) / (calibration::kChartColumns - 1) - 1,
-                         2.0 * (i / calibration::kChartColumns) / (calibration::kChartRows - 1) - 1});
+      samples.push_back({chart.camera[at], reference[at], 2.0 * (i % kChartColumns) / (kChartColumns - 1) - 1,
+                         2.0 * (i / kChartColumns) / (kChartRows - 1) - 1});
     }
     return samples;
   }
 
  private:
   const CalibrateColorOptions& options_;
-  const calibration::ChartReference& reference_;
+  const ChartReference& reference_;
   ColorMeasurement& out_;
   std::vector<std::string>& warnings_;
 };
@@ -288,16 +281,14 @@ FlatChart mean_of_charts(const std::vector<FlatChart>& charts) {
 }
 
 Result<void> fit_curve(ColorMeasurement& color) {
-  const auto curve_of = [](const std::vector<ChartSample>& samples) {
-    return calibration::fit_color_curve(samples, 1);
-  };
+  const auto curve_of = [](const std::vector<ChartSample>& samples) { return fit_color_curve(samples, 1); };
   Result<ColorCurve> curve = curve_of(color.samples);
   if (!curve) return std::move(curve).error();
   color.transform.curve = *curve;
   for (std::size_t i = 0; i < color.samples.size(); ++i) {
     const ChartSample& sample = color.samples[i];
     color.by_curve.push_back(
-        calibration::ciede2000_of(rec709_of_camera(color.transform, sample.camera), sample.reference));
+        ciede2000_of(rec709_of_camera(color.transform, sample.camera), sample.reference));
     std::vector<ChartSample> others = color.samples;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     Result<ColorCurve> without = curve_of(others);
@@ -305,7 +296,7 @@ Result<void> fit_curve(ColorMeasurement& color) {
     ColorTransform transform;
     transform.curve = *without;
     color.curve_left_out.push_back(
-        calibration::ciede2000_of(rec709_of_camera(transform, sample.camera), sample.reference));
+        ciede2000_of(rec709_of_camera(transform, sample.camera), sample.reference));
   }
   return {};
 }
@@ -356,10 +347,9 @@ Result<ReadCharts> read_charts(const CalibrateColorOptions& options, const Calib
   return read;
 }
 
-Result<void> fit_matrix(const FlatChart& chart, const calibration::ChartReference& reference,
-                        ColorMeasurement& color) {
+Result<void> fit_matrix(const FlatChart& chart, const ChartReference& reference, ColorMeasurement& color) {
   color.samples = ChartReader::samples_of(chart, reference, color.patches);
-  Result<calibration::ColorFit> fit = calibration::fit_color(color.samples, ChartLight::kEven, true);
+  Result<ColorFit> fit = fit_color(color.samples, ChartLight::kEven, true);
   if (!fit) return std::move(fit).error();
   for (ChartSample& sample : color.samples) {
     for (double& v : sample.camera) v *= fit->scale;
@@ -461,4 +451,4 @@ Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, c
   return outcome;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

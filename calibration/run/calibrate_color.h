@@ -10,7 +10,7 @@
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 struct CalibrateColorOptions {
   std::filesystem::path input;   ///< photographs or sessions of a 24-patch chart, or one of them
@@ -35,4 +35,4 @@ void describe(Fields& fields, CalibrateColorOptions& options);
 /// unusable; a photograph of another body or aperture than `from`.
 Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -17,11 +17,10 @@
 #include "solve/input/load.h"
 #include "solve/input/session_input.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::GreyChartFit;
 
 constexpr double kBentFrom_sigmas = 4;
 
@@ -37,7 +36,7 @@ Result<std::vector<WhitePatch>> patches_in(const ScaleSettings& scale, const fs:
     return unusable(file, "it has no corners_px",
                     "name the outer corners of the row of patches, clockwise from the first patch");
   }
-  const calibration::ChartCorners& corners = *scale.corners_px;
+  const ChartCorners& corners = *scale.corners_px;
   for (const auto& [x, y] : corners) {
     if (!(x >= 0 && y >= 0 && x < frame.width && y < frame.height)) {
       return unusable(file, fmt::format("corner ({:.0f}, {:.0f}) is outside the frame", x, y),
@@ -45,10 +44,10 @@ Result<std::vector<WhitePatch>> patches_in(const ScaleSettings& scale, const fs:
     }
   }
   const auto count = scale.reflectances.size();
-  const double length = static_cast<double>(count) - 1 + calibration::kPatchShare;
+  const double length = static_cast<double>(count) - 1 + kPatchShare;
   std::vector<WhitePatch> patches;
   for (std::size_t i = 0; i < count; ++i) {
-    const double from = static_cast<double>(i) / length, to = from + calibration::kPatchShare / length;
+    const double from = static_cast<double>(i) / length, to = from + kPatchShare / length;
     const auto on = [&](std::size_t a, std::size_t b, double t) {
       return std::array{corners[a][0] + t * (corners[b][0] - corners[a][0]),
                         corners[a][1] + t * (corners[b][1] - corners[a][1])};
@@ -58,14 +57,14 @@ Result<std::vector<WhitePatch>> patches_in(const ScaleSettings& scale, const fs:
   return patches;
 }
 
-Result<GreyChartFit> fit(Calibration calibration, const pipeline::Photographs& photographs,
+Result<GreyChartFit> fit(Calibration calibration, const solve::Photographs& photographs,
                          const ScaleSettings& scale, std::vector<WhitePatch> patches) {
   calibration.patches = std::move(patches);
   const auto evidence = rig_evidence(calibration, photographs);
   if (!evidence) return evidence.error();
-  std::vector<calibration::GreyPatch> greys;
+  std::vector<GreyPatch> greys;
   for (std::size_t i = 0; i < evidence->places.size(); ++i) {
-    const calibration::LitPlace& place = evidence->places[i];
+    const LitPlace& place = evidence->places[i];
     greys.push_back({place.x_px, place.y_px, scale.reflectances[i], place.reading_rgb});
   }
   const NearLights& lights = std::get<NearLights>(*calibration.lights);
@@ -75,7 +74,7 @@ Result<GreyChartFit> fit(Calibration calibration, const pipeline::Photographs& p
     full_reading[static_cast<std::size_t>(photographs.leds[k] - 1)] =
         1 / (1e-6 * shot.exposure_us * shot.iso / 100);
   }
-  calibration::GreyChartOptions options;
+  GreyChartOptions options;
   options.height_mm = scale.height_mm;
   options.reflectance_sigma = scale.reflectance_sigma;
   options.delta = scale.delta;
@@ -154,7 +153,7 @@ CalibrationReport report_of(const GreyChartFit& fit, const Calibration& before, 
   report.summary =
       fmt::format("{} LEDs by {} patches, fluxes to {:.2f} percent, bend {:+.4f} +- {:.4f}",
                   fit.flux_sigma.size(), fit.off_percent.size(), 100 * sigma, fit.bend, fit.bend_sigma);
-  if (fit.chi_square > calibration::kMisfitFrom) {
+  if (fit.chi_square > kMisfitFrom) {
     report.verdicts.push_back(
         {"GREY_MISFIT",
          fmt::format("the patches contradict each other: chi-square is {:.1f}", fit.chi_square),
@@ -199,7 +198,7 @@ void describe(Fields& fields, CalibrateGreyOptions& o) {
 
 Result<CalibrateOutcome> calibrate_grey(const CalibrateGreyOptions& options, const JobContext& context) {
   if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
-  const Result<SolvePlan> plan = plan_session({options.session, options.from, {}});
+  const Result<solve::SolvePlan> plan = solve::plan_session({options.session, options.from, {}});
   if (!plan) return plan.error();
   const Calibration& before = plan->calibration;
   if (!std::holds_alternative<NearLights>(*before.lights) || !plan->raw) {
@@ -212,7 +211,7 @@ Result<CalibrateOutcome> calibrate_grey(const CalibrateGreyOptions& options, con
   if (!scale) return scale.error();
   Result<std::vector<WhitePatch>> patches = patches_in(*scale, file, plan->size);
   if (!patches) return std::move(patches).error();
-  const Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
+  const Result<solve::Photographs> loaded = solve::load_photographs(*plan, context);
   if (!loaded) return loaded.error();
   const Result<GreyChartFit> found = fit(before, *loaded, *scale, std::move(*patches));
   if (!found) return found.error();
@@ -235,4 +234,4 @@ Result<CalibrateOutcome> calibrate_grey(const CalibrateGreyOptions& options, con
   return outcome;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

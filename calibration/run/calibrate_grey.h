@@ -8,7 +8,7 @@
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 struct CalibrateGreyOptions {
   std::filesystem::path session = {};  ///< of a grey scale that lies flat on the table
@@ -30,4 +30,4 @@ void describe(Fields& fields, CalibrateGreyOptions& options);
 /// and for distant lights. Then nothing is written.
 Result<CalibrateOutcome> calibrate_grey(const CalibrateGreyOptions& options, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

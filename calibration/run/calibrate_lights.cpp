@@ -21,12 +21,10 @@
 #include "core/rig/light_field.h"
 #include "solver/uncertainty/calibration_sigma.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::PaperReading;
-using calibration::Pose;
 
 constexpr int kCellsAcross = 26;      // blocks of the fit over the frame's width
 constexpr double kUnevenness = 1e-3;  // of white paper over a few millimetres
@@ -69,8 +67,8 @@ class LightsCalibration {
   Result<void> run_seed();
   Result<CalibrateOutcome> write();
   Result<std::vector<NamedFile>> maps() const;
-  calibration::LightFitOptions fit_options() const;
-  calibration::CellGrid cells() const;
+  LightFitOptions fit_options() const;
+  CellGrid cells() const;
   void take_readings();
 
   const CalibrateLightsOptions& options_;
@@ -126,7 +124,7 @@ Result<void> LightsCalibration::read() {
   const auto blocks = static_cast<std::size_t>(captures_.columns) * static_cast<std::size_t>(captures_.rows);
   left_out_.assign(captures_.captures.size(), std::vector<char>(blocks));
 
-  calibration::PaperScene& start = evidence_.start;
+  PaperScene& start = evidence_.start;
   start.camera = *calibration_.camera;
   start.lights = std::get<NearLights>(*calibration_.lights);
   for (NearLight& led : start.lights.leds) led.log_gain_quadratic = {};
@@ -149,7 +147,7 @@ void LightsCalibration::take_readings() {
   evidence_.readings = merged_blocks(captures_, left_out_, cells());
 }
 
-calibration::CellGrid LightsCalibration::cells() const {
+CellGrid LightsCalibration::cells() const {
   const Size size = calibration_.camera->size;
   const int columns = std::min(kCellsAcross, captures_.columns);
   return {
@@ -157,8 +155,8 @@ calibration::CellGrid LightsCalibration::cells() const {
       std::clamp(static_cast<int>(std::lround(1.0 * columns * size.height / size.width)), 1, captures_.rows)};
 }
 
-calibration::LightFitOptions LightsCalibration::fit_options() const {
-  calibration::LightFitOptions how;
+LightFitOptions LightsCalibration::fit_options() const {
+  LightFitOptions how;
   how.position_sigma_mm = options_.tape_sigma_mm;
   how.lambertian = options_.lambertian;
   how.unevenness = kUnevenness;
@@ -173,8 +171,7 @@ Result<void> LightsCalibration::fit_clean_paper() {
   for (bool again = true; again;) {
     if (context_.stop.stop_requested()) return interrupted();
     context_.progress("fit", evidence_.fit ? 0.5 : 0);
-    Result<calibration::LightFit> fit =
-        calibration::fit_lights(evidence_.start, evidence_.readings, fit_options());
+    Result<LightFit> fit = fit_lights(evidence_.start, evidence_.readings, fit_options());
     if (!fit) {
       Error error = std::move(fit).error();
       error.where = fmt::format("{}: {}", options_.input.string(), error.where);
@@ -192,13 +189,13 @@ Result<void> LightsCalibration::fit_clean_paper() {
 
 Result<void> LightsCalibration::leave_out_faults(bool& any) {
   const std::vector<PaperReading> blocks = single_blocks(captures_, left_out_);
-  const std::vector<calibration::PaperSpot> spots = spots_of(evidence_.fit->scene, blocks);
+  const std::vector<PaperSpot> spots = spots_of(evidence_.fit->scene, blocks);
   const CameraModel& camera = *calibration_.camera;
   const double spacing_mm = length(point_on_plane(camera, camera.cx + captures_.block_px, camera.cy, 0) -
                                    point_on_plane(camera, camera.cx, camera.cy, 0));
   evidence_.faults = find_faults(spots, spacing_mm);
   std::size_t faulty = 0;
-  for (const calibration::PaperFault& fault : evidence_.faults) {
+  for (const PaperFault& fault : evidence_.faults) {
     std::vector<std::string> where;
     for (const std::size_t sheet : fault.sheets) where.push_back(evidence_.captures[sheet]);
     verdicts_.push_back(
@@ -222,9 +219,9 @@ Result<void> LightsCalibration::leave_out_faults(bool& any) {
     }
   }
   any = faulty > 0;
-  if (static_cast<double>(faulty) > calibration::kMostFaultyShare * static_cast<double>(spots.size()) &&
+  if (static_cast<double>(faulty) > kMostFaultyShare * static_cast<double>(spots.size()) &&
       !options_.accept_misfit) {
-    const calibration::PaperFault& largest = evidence_.faults.front();
+    const PaperFault& largest = evidence_.faults.front();
     return bad(ErrorKind::kBadData, "the paper is not an even, flat white", options_.input.string(),
                fmt::format("{:.0f} percent of it depart from the fit, most at u = {:.0f} mm, v = {:.0f} mm "
                            "from its centre, a {} of {:.0f} mm^2",
@@ -238,16 +235,15 @@ Result<void> LightsCalibration::leave_out_faults(bool& any) {
 
 // The gate: do the readings agree with the model, and do they say enough?
 Result<void> LightsCalibration::judge() {
-  const calibration::LightFit& fit = *evidence_.fit;
+  const LightFit& fit = *evidence_.fit;
   if (fit.misfits()) {
     std::string why = fmt::format(
         "chi-square is {:.2f} for each of {:.0f} degrees of freedom, at most {:.1f} is consistent{}; the "
         "most: {}",
-        fit.chi_square, fit.degrees_of_freedom, calibration::kMisfitFrom,
+        fit.chi_square, fit.degrees_of_freedom, kMisfitFrom,
         fit.settled ? "" : ", and the fit did not settle", worst_of(evidence_));
     if (fit.flickers_too_much) {
-      why += fmt::format("; LEDs differ from shot to shot by more than {:.2g} times --flicker",
-                         calibration::kMostFlicker);
+      why += fmt::format("; LEDs differ from shot to shot by more than {:.2g} times --flicker", kMostFlicker);
     }
     if (fit.other_shot) {
       why += fmt::format("; LED {} gave {:.3g} times the light in {} that it gave in the others",
@@ -266,7 +262,7 @@ Result<void> LightsCalibration::judge() {
                          "trust these lights only as far as weft calibrate check does"});
   }
   std::vector<Pose> poses;
-  for (const calibration::SheetPose& sheet : fit.scene.sheets) {
+  for (const SheetPose& sheet : fit.scene.sheets) {
     const auto same = [&](const Pose& other) { return same_pose(other, sheet.rig_from_sheet); };
     if (std::none_of(poses.begin(), poses.end(), same)) poses.push_back(sheet.rig_from_sheet);
   }
@@ -282,7 +278,7 @@ Result<void> LightsCalibration::judge() {
 
 // Worst over four azimuths at each cell of the frame.
 Result<void> LightsCalibration::predict() {
-  const calibration::LightFit& fit = *evidence_.fit;
+  const LightFit& fit = *evidence_.fit;
   const Size size = calibration_.camera->size;
   std::vector<int> leds(fit.scene.lights.leds.size());
   std::iota(leds.begin(), leds.end(), 1);
@@ -318,7 +314,7 @@ Result<void> LightsCalibration::predict() {
 }
 
 Result<void> LightsCalibration::run_per_pixel() {
-  calibration::PerPixelOptions how;
+  PerPixelOptions how;
   how.threads = context_.threads;
   context_.progress("per pixel", 0);
   auto solved = solve_per_pixel(evidence_.fit->scene, evidence_.readings, cells(), how);
@@ -369,12 +365,12 @@ Result<void> LightsCalibration::run_seed() {
 }
 
 Result<std::vector<NamedFile>> LightsCalibration::maps() const {
-  const std::vector<calibration::LightMap>* all = evidence_.per_pixel ? &evidence_.per_pixel->maps
-                                                  : evidence_.seed    ? &evidence_.seed->maps
-                                                                      : nullptr;
+  const std::vector<LightMap>* all = evidence_.per_pixel ? &evidence_.per_pixel->maps
+                                     : evidence_.seed    ? &evidence_.seed->maps
+                                                         : nullptr;
   std::vector<NamedFile> files;
   if (all == nullptr) return files;
-  const calibration::CellGrid& grid = evidence_.per_pixel ? evidence_.per_pixel->grid : evidence_.seed->grid;
+  const CellGrid& grid = evidence_.per_pixel ? evidence_.per_pixel->grid : evidence_.seed->grid;
   const PartialFolder aside(options_.output);
   if (Result<void> made = make_writable_folder(aside.path()); !made) return std::move(made).error();
   for (std::size_t k = 0; k < all->size(); ++k) {
@@ -467,4 +463,4 @@ Result<CalibrateOutcome> calibrate_lights(const CalibrateLightsOptions& options,
   return LightsCalibration(options, context).run();
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -9,7 +9,7 @@
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// How lights are found from readings of paper.
 enum class LightsMethod {
@@ -44,4 +44,4 @@ void describe(Fields& fields, CalibrateLightsOptions& options);
 /// accepted. A calibration from one sheet is written with a warning and its predicted error.
 Result<CalibrateOutcome> calibrate_lights(const CalibrateLightsOptions& options, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -8,7 +8,7 @@
 #include "calibration/run/calibration_report.h"
 #include "core/rig/calibration.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// What a step of `weft calibrate` did.
 struct CalibrateOutcome {
@@ -18,4 +18,4 @@ struct CalibrateOutcome {
   std::vector<std::string> warnings;  ///< a sentence each, beside the report's verdicts
 };
 
-}  // namespace weft::app
+}  // namespace weft::calibration

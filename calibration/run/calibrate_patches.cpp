@@ -18,7 +18,7 @@
 #include "solve/input/load.h"
 #include "solve/input/session_input.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -79,12 +79,12 @@ struct MeasuredPatch {
 };
 
 /// Means over the LEDs by whose light all of the patch can be read.
-Result<MeasuredPatch> measure_patch(const pipeline::Photographs& photographs, const WhitePatch& patch,
+Result<MeasuredPatch> measure_patch(const solve::Photographs& photographs, const WhitePatch& patch,
                                     const LightField& field, const std::string& where) {
   MeasuredPatch measured;
   double least = std::numeric_limits<double>::infinity(), most = 0;
   int leds = 0;
-  for (const std::optional<solver::PatchLight>& light : pipeline::read_patch(photographs, patch, field)) {
+  for (const std::optional<solver::PatchLight>& light : solve::read_patch(photographs, patch, field)) {
     if (!light || light->unusable > 0) continue;
     ++leds;
     for (std::size_t c = 0; c < 3; ++c)
@@ -102,7 +102,7 @@ Result<MeasuredPatch> measure_patch(const pipeline::Photographs& photographs, co
                                  100 * measured.spread));
 }
 
-Result<std::vector<MeasuredPatch>> measure_patches(const pipeline::Photographs& photographs,
+Result<std::vector<MeasuredPatch>> measure_patches(const solve::Photographs& photographs,
                                                    std::span<const WhitePatch> patches,
                                                    const fs::path& file) {
   std::vector<MeasuredPatch> measured;
@@ -165,7 +165,7 @@ void describe(Fields& fields, CalibratePatchesOptions& o) {
 Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& options,
                                            const JobContext& context) {
   if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
-  Result<SolvePlan> plan = plan_session({options.session, options.from, {}});
+  Result<solve::SolvePlan> plan = solve::plan_session({options.session, options.from, {}});
   if (!plan) return std::move(plan).error();
   const fs::path file = options.patches.empty()
                             ? absolute_folder(options.session).parent_path() / "patches.toml"
@@ -179,7 +179,7 @@ Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& option
     return bad_patches(options.session.string(), "the calibration's lights are distant");
   }
   plan->calibration.patches.clear();  // those of before say nothing of these
-  const Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
+  const Result<solve::Photographs> loaded = solve::load_photographs(*plan, context);
   if (!loaded) return loaded.error();
 
   const Result<std::vector<MeasuredPatch>> measured = measure_patches(*loaded, *patches, file);
@@ -205,4 +205,4 @@ Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& option
   return outcome;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -10,7 +10,7 @@
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 struct CalibratePatchesOptions {
   std::filesystem::path session = {};  ///< taken with the rig as it was calibrated
@@ -35,4 +35,4 @@ Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& option
 /// What is said where a new `part` ("camera", "lights") is measured, by which old patches mean nothing.
 std::string patches_left_out(const std::string& part);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

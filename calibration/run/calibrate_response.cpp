@@ -21,14 +21,10 @@
 #include "core/image_io/image_io.h"
 #include "report/plot_svg.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::BlackFrom;
-using calibration::ResponseFrames;
-using calibration::ResponseMeasurement;
-using calibration::TrapReading;
 
 constexpr double kBigHotShare = 1e-3;
 constexpr double kReachNeeded = 0.75;  // of full scale, for a curve to be trusted to the end
@@ -39,8 +35,8 @@ constexpr std::array<const char*, 3> kChannels = {"red", "green", "blue"};
 // What a grey scale said.
 struct ScaleReading {
   std::vector<double> reflectances;
-  calibration::ScaleCheck straight;  // without the measured curve
-  calibration::ScaleCheck corrected;
+  ScaleCheck straight;  // without the measured curve
+  ScaleCheck corrected;
 };
 
 // Mean linear v of each patch over all frames; 0 where it is full in one of them.
@@ -48,14 +44,14 @@ Result<std::vector<std::array<double, 3>>> read_scale(const ResponseFrames& fram
                                                       const ScaleSettings& settings) {
   std::vector<std::array<double, 3>> mean(settings.reflectances.size());
   std::vector<bool> is_full(mean.size());
-  calibration::ChartCorners corners = *settings.corners_px;
+  ChartCorners corners = *settings.corners_px;
   for (auto& corner : corners) {
     for (double& v : corner) v = (v - 0.5) / 2;  // pictures are of half size
   }
   for (const fs::path& file : frames.scale) {
     const Result<RawFrame> frame = capture::decode_raw(file, {.size = frames.size, .cfa = {}, .model = {}});
     if (!frame) return frame.error();
-    const auto patches = calibration::read_patches(half_size_picture(*frame, response), corners,
+    const auto patches = calibration::read_patches(capture::half_size_picture(*frame, response), corners,
                                                    static_cast<int>(mean.size()), 1);
     if (!patches) return patches.error();
     for (std::size_t i = 0; i < mean.size(); ++i) {
@@ -77,10 +73,10 @@ Result<std::optional<ScaleReading>> check_scale(const ScaleSettings& settings, c
   straight.linearity = {};
   ScaleReading reading;
   reading.reflectances = settings.reflectances;
-  const auto check = [&](const Response& used, calibration::ScaleCheck& out) -> Result<void> {
+  const auto check = [&](const Response& used, ScaleCheck& out) -> Result<void> {
     const auto v = read_scale(frames, used, settings);
     if (!v) return v.error();
-    Result<calibration::ScaleCheck> checked = calibration::check_scale(reading.reflectances, *v);
+    Result<ScaleCheck> checked = calibration::check_scale(reading.reflectances, *v);
     if (!checked) return std::move(checked).error();
     out = std::move(*checked);
     return {};
@@ -97,9 +93,9 @@ Result<std::optional<TrapReading>> read_trap(const ResponseFrames& frames, const
   for (const fs::path& file : frames.trap) {
     const Result<RawFrame> frame = capture::decode_raw(file, {.size = frames.size, .cfa = {}, .model = {}});
     if (!frame) return frame.error();
-    pictures.push_back(half_size_picture(*frame, response));
+    pictures.push_back(capture::half_size_picture(*frame, response));
   }
-  Result<TrapReading> trap = calibration::read_black_trap(pictures);
+  Result<TrapReading> trap = read_black_trap(pictures);
   if (!trap) {
     Error error = std::move(trap).error();
     error.where = frames.trap.front().parent_path().string();
@@ -113,7 +109,7 @@ std::string percent(double share, int digits = 2) {
 }
 
 report::Section summary_section(const ResponseFrames& frames, const ResponseMeasurement& m) {
-  const calibration::PhotonTransfer& t = m.transfer;
+  const PhotonTransfer& t = m.transfer;
   report::Table table = {{"what", "measured", "standard deviation"}, {}};
   table.rows.push_back({"gain, electrons a count", fmt::format("{:.4f}", t.electrons_per_count),
                         fmt::format("{:.4f}", t.sigma_electrons_per_count)});
@@ -139,7 +135,7 @@ report::Section summary_section(const ResponseFrames& frames, const ResponseMeas
 report::Section transfer_section(const ResponseMeasurement& m) {
   report::PlotSeries measured = {.name = "measured"},
                      fitted = {.name = "fitted line", .joined = true, .marked = false};
-  for (const calibration::TransferBin& bin : m.transfer.bins) {
+  for (const TransferBin& bin : m.transfer.bins) {
     measured.points.push_back({bin.signal_counts, bin.variance_counts2});
     fitted.points.push_back({bin.signal_counts, bin.fitted_counts2});
   }
@@ -147,7 +143,7 @@ report::Section transfer_section(const ResponseMeasurement& m) {
           .paragraphs = {fmt::format("Half the variance of the difference of two frames alike, in squares of "
                                      "{} photosites, against their mean. Chi-square a degree of freedom: "
                                      "{:.3f}; well above 1 the noise is not that of photons.",
-                                     calibration::kResponseBlock, m.transfer.chi_square_per_freedom)},
+                                     kResponseBlock, m.transfer.chi_square_per_freedom)},
           .figures = {
               {"variance by signal, both linear in light", report::plot_svg({.x_label = "signal, counts",
                                                                              .y_label = "variance, counts^2",
@@ -156,7 +152,7 @@ report::Section transfer_section(const ResponseMeasurement& m) {
                                                                              .log_y = true})}}};
 }
 
-report::Section linearity_section(const calibration::Superposition& s) {
+report::Section linearity_section(const Superposition& s) {
   report::Section section = {"Linearity"};
   section.paragraphs = {
       fmt::format("What the light of two LEDs one by one has over that of both together, with what the LEDs "
@@ -167,7 +163,7 @@ report::Section linearity_section(const calibration::Superposition& s) {
                          {}};
   for (std::size_t c = 0; c < 3; ++c) {
     report::PlotSeries before = {.name = "before", .joined = true}, after = {.name = "after", .joined = true};
-    for (const calibration::SuperpositionBin& bin : s.bins[c]) {
+    for (const SuperpositionBin& bin : s.bins[c]) {
       before.points.push_back({100 * bin.v, 100 * bin.before});
       after.points.push_back({100 * bin.v, 100 * bin.after});
     }
@@ -186,7 +182,7 @@ report::Section balance_section(const ResponseMeasurement& m, const Calibration*
   report::Table table = {{"LED", "red / green", "blue / green", "in the calibration before"}, {}};
   const NearLights* lights =
       from != nullptr && from->lights ? std::get_if<NearLights>(&*from->lights) : nullptr;
-  for (const calibration::LedBalance& b : m.balance) {
+  for (const LedBalance& b : m.balance) {
     std::string before;
     const auto at = static_cast<std::size_t>(b.led - 1);
     if (lights != nullptr && at < lights->leds.size()) {
@@ -205,7 +201,7 @@ report::Section balance_section(const ResponseMeasurement& m, const Calibration*
 
 report::Section ratio_section(const ResponseMeasurement& m) {
   report::Table table = {{"longer, us", "shorter, us", "measured", "by the times", "among LEDs"}, {}};
-  for (const calibration::MeasuredRatio& r : m.ratios) {
+  for (const MeasuredRatio& r : m.ratios) {
     table.rows.push_back({fmt::format("{:.0f}", r.ratio.exposure_us),
                           fmt::format("{:.0f}", r.ratio.to_exposure_us), fmt::format("{:.5f}", r.ratio.ratio),
                           fmt::format("{:.5f}", r.ratio.exposure_us / r.ratio.to_exposure_us),
@@ -264,7 +260,7 @@ Json numbers_of(const ResponseFrames& frames, const ResponseMeasurement& m,
                   {"pairs", frames.pairs},
                   {"full_frames", frames.full}};
   if (m.superposition) {
-    const calibration::Superposition& s = *m.superposition;
+    const Superposition& s = *m.superposition;
     numbers["linearity"] = s.linearity;
     numbers["departure"] = {s.departure(0), s.departure(1), s.departure(2)};
     numbers["sigma_departure"] = {s.sigma_departure(0), s.sigma_departure(1), s.sigma_departure(2)};
@@ -272,11 +268,11 @@ Json numbers_of(const ResponseFrames& frames, const ResponseMeasurement& m,
     numbers["superposition_chi_square"] = s.chi_square_per_freedom;
   }
   numbers["white_balance"] = Json::array();
-  for (const calibration::LedBalance& b : m.balance) {
+  for (const LedBalance& b : m.balance) {
     numbers["white_balance"].push_back({{"led", b.led}, {"light_rgb", b.light}});
   }
   numbers["exposure_ratios"] = Json::array();
-  for (const calibration::MeasuredRatio& r : m.ratios) {
+  for (const MeasuredRatio& r : m.ratios) {
     numbers["exposure_ratios"].push_back({{"exposure_us", r.ratio.exposure_us},
                                           {"to_exposure_us", r.ratio.to_exposure_us},
                                           {"ratio", r.ratio.ratio},
@@ -414,7 +410,7 @@ Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& opti
   const Result<ResponseFrames> frames =
       read_response_frames(options.input, options.trap, from ? &*from : nullptr, context);
   if (!frames) return frames.error();
-  const Result<ResponseMeasurement> measured = calibration::measure_response(*frames);
+  const Result<ResponseMeasurement> measured = measure_response(*frames);
   if (!measured) return measured.error();
   CalibrateOutcome outcome;
   outcome.warnings = frames->warnings;
@@ -460,4 +456,4 @@ Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& opti
   return outcome;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -9,7 +9,7 @@
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 struct CalibrateResponseOptions {
   std::filesystem::path input;   ///< dark/, ledNN/, ledNN+ledMM/, scale/ and trap/, any but one ledNN/ absent
@@ -29,4 +29,4 @@ void describe(Fields& fields, CalibrateResponseOptions& options);
 Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& options,
                                             const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -3,7 +3,7 @@
 
 #include "core/base/files.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 namespace fs = std::filesystem;
 
@@ -47,4 +47,4 @@ Result<void> write_report(const CalibrationReport& report, const fs::path& folde
   return partial.publish();
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -14,7 +14,7 @@
 // The report of one step of a calibration: what was measured, how well, and what to do where it is not well
 // enough.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// What one step found, as a page and as numbers for programs. No verdict: the calibration is accepted.
 struct CalibrationReport : report::Page {
@@ -42,4 +42,4 @@ Json document_of(const CalibrationReport& report);
 /// A document as files have it. Bytes of a name that are no UTF-8 are replaced.
 std::string text_of(const Json& document);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

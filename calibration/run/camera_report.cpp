@@ -6,12 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
-
-using calibration::BoardFit;
-using calibration::LensTrial;
-using calibration::propagated;
 
 constexpr int kColumns = 12, kRows = 8;     // of the coverage
 constexpr double kLeastCoverage = 0.6;      // of these parts
@@ -353,4 +349,4 @@ CalibrationReport camera_report(const CameraFitFacts& facts) {
   return report;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

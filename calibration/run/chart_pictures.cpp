@@ -19,7 +19,7 @@
 #include "solve/input/session_input.h"
 #include "solver/method.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 class HalfAlbedo {
  public:
   explicit HalfAlbedo(Size size) : half_({size.width / 2, size.height / 2}, 3) {}
-  void add(const pipeline::MapBand& band) {
+  void add(const solve::MapBand& band) {
     for (int c = 0; c < 3; ++c) {
       const View<const float>& albedo = band.albedo[static_cast<std::size_t>(c)];
       for (int y = band.albedo_rows.y0; y < std::min(band.albedo_rows.y1, 2 * half_.height()); ++y) {
@@ -45,20 +45,20 @@ class HalfAlbedo {
 
 Result<ChartPicture> solve_chart(const fs::path& session, const fs::path& calibration,
                                  const JobContext& context) {
-  SessionOptions options;
+  solve::SessionOptions options;
   options.folder = session;
   options.calibration = calibration;
-  const Result<SolvePlan> plan = plan_session(options);
+  const Result<solve::SolvePlan> plan = solve::plan_session(options);
   if (!plan) return plan.error();
-  const Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
+  const Result<solve::Photographs> loaded = solve::load_photographs(*plan, context);
   if (!loaded) return loaded.error();
   HalfAlbedo albedo(loaded->size);
-  const auto keep = [&](const pipeline::MapBand& band) -> Result<void> {
+  const auto keep = [&](const solve::MapBand& band) -> Result<void> {
     albedo.add(band);
     return {};
   };
   const Result<double> solved =
-      solve_bands(*loaded, *solver::standard_method(), pipeline::kSolveTile, context, keep);
+      solve_bands(*loaded, *solver::standard_method(), solve::kSolveTile, context, keep);
   if (!solved) return solved.error();
   ChartPicture picture;
   picture.is_albedo = true;
@@ -145,7 +145,8 @@ Result<ChartPicture> read_chart_picture(const fs::path& file, const Calibration*
     const Result<RawFrame> frame = capture::decode_raw(file);
     if (!frame) return frame.error();
     picture.camera = frame->shot;
-    picture.rgb = half_size_picture(*frame, from != nullptr && from->response ? *from->response : Response());
+    picture.rgb =
+        capture::half_size_picture(*frame, from != nullptr && from->response ? *from->response : Response());
   }
   picture.source = file;
   return picture;
@@ -154,8 +155,7 @@ Result<ChartPicture> read_chart_picture(const fs::path& file, const Calibration*
 Result<ChartColors> read_chart_colors(const fs::path& input) {
   const fs::path file =
       (is_there(input / "session.json") ? absolute_folder(input).parent_path() : input) / "chart.toml";
-  const ChartColors published = {calibration::published_chart(),
-                                 "as published for charts from November 2014"};
+  const ChartColors published = {published_chart(), "as published for charts from November 2014"};
   if (!is_there(file)) return published;
   const Result<toml::table> table = read_toml(file);
   if (!table) return table.error();
@@ -166,8 +166,7 @@ Result<ChartColors> read_chart_colors(const fs::path& input) {
   if (!said->rec709.is_null()) return written_colors(file, "rec709", said->rec709);
   if (!said->srgb.is_null()) return written_colors(file, "srgb", said->srgb);
   if (said->chart.edition == "2014") return published;
-  return ChartColors{calibration::published_chart_before_2014(),
-                     "as published for charts before November 2014"};
+  return ChartColors{published_chart_before_2014(), "as published for charts before November 2014"};
 }
 
 void describe(Fields& fields, ChartEdition& chart) {
@@ -177,4 +176,4 @@ void describe(Fields& fields, ChartEdition& chart) {
                chart.edition);
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

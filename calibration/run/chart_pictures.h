@@ -16,7 +16,7 @@
 
 // Pictures of a colour chart, linear in the camera's channels.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// A photograph of the chart under some lamp, or the solved albedo of a session.
 struct ChartPicture {
@@ -42,7 +42,7 @@ Result<ChartPicture> read_chart_picture(const std::filesystem::path& file, const
 /// is one. Its keys: `edition` ("2014", or "before 2014"), or 24 colours as `lab_d50` ([[L, a, b], ...]),
 /// `rec709` (linear, white 1) or `srgb` (8 bits). kBadData names what is wrong.
 struct ChartColors {
-  calibration::ChartReference reference;
+  ChartReference reference;
   std::string name;  ///< for people
 };
 Result<ChartColors> read_chart_colors(const std::filesystem::path& input);
@@ -53,4 +53,4 @@ struct ChartEdition {
 };
 void describe(Fields& fields, ChartEdition& chart);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

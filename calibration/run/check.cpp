@@ -26,11 +26,10 @@
 #include "solve/input/load.h"
 #include "solve/input/session_input.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::SheetCheck;
 
 struct CheckedSheet {
   std::string name;
@@ -107,7 +106,7 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
                                    const TaggedSheet& sheet, const std::map<std::string, Vec3>& planes,
                                    const JobContext& context, Calibration& calibration,
                                    std::string& taken_at) {
-  Result<SolvePlan> plan = plan_session({session, options.from, {}});
+  Result<solve::SolvePlan> plan = solve::plan_session({session, options.from, {}});
   if (!plan) return plan.error();
   if (!calibration.id.empty() && plan->calibration.id != calibration.id) {
     return Error{ErrorKind::kBadData, "the sessions were taken with different calibrations", session.string(),
@@ -115,14 +114,14 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
                  "name the calibration to check with --from, or check each session alone"};
   }
   plan->calibration.patches.clear();  // the sheet may cover them: drift is what the repeat shot says
-  const Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
+  const Result<solve::Photographs> loaded = solve::load_photographs(*plan, context);
   if (!loaded) return loaded.error();
   calibration = plan->calibration;
   if (!std::holds_alternative<NearLights>(*calibration.lights)) {
     return Error{ErrorKind::kBadData, "the calibration cannot be checked", session.string(),
                  "its lights are distant", "calibrate the rig's lights first"};
   }
-  Result<calibration::SheetEvidence> evidence =
+  Result<SheetEvidence> evidence =
       sheet_evidence(calibration, *loaded, sheet, options.square_px, session.string(), context);
   if (!evidence) return std::move(evidence).error();
   const auto plane = planes.find(session.filename().string());
@@ -148,7 +147,7 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
 }
 
 /// What a sheet says against the calibration.
-std::vector<Verdict> verdicts_of(const CheckedSheet& sheet, const calibration::CheckLimits& limits) {
+std::vector<Verdict> verdicts_of(const CheckedSheet& sheet, const CheckLimits& limits) {
   constexpr const char* kRemedy = "calibrate the lights again, and camera and response before them";
   std::vector<Verdict> verdicts;
   const SheetCheck& check = sheet.check;
@@ -301,10 +300,8 @@ CalibrationReport sheets_report(const std::vector<CheckedSheet>& sheets, const C
 }
 
 /// What to say where nothing contradicts the calibration and yet not all is well; else empty.
-std::string doubt_of(const calibration::Movement& movement) {
-  if (movement.chi_square_after < calibration::kDoubtfulFrom ||
-      movement.chi_square_after > calibration::kUnexplainedFrom)
-    return "";
+std::string doubt_of(const Movement& movement) {
+  if (movement.chi_square_after < kDoubtfulFrom || movement.chi_square_after > kUnexplainedFrom) return "";
   return fmt::format(
       "What is seen is explained worse than usual: chi-square is {:.1f} for each observation, and about 1 "
       "where all is well; look whether a patch is dirty, a tag lies loose or a lamp is on",
@@ -312,7 +309,7 @@ std::string doubt_of(const calibration::Movement& movement) {
 }
 
 /// Whether maps would show it. What costs less is as likely the paper's waves.
-bool matters(const calibration::MovementCost& cost) {
+bool matters(const MovementCost& cost) {
   constexpr double kLeast_deg = 0.02, kLeastAlbedo = 0.002;
   return cost.worst_deg > kLeast_deg || std::abs(cost.albedo_factor - 1) > kLeastAlbedo ||
          cost.albedo_unevenness > kLeastAlbedo;
@@ -320,7 +317,7 @@ bool matters(const calibration::MovementCost& cost) {
 
 CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
   CalibrationReport report;
-  const calibration::Movement& movement = rig.movement;
+  const Movement& movement = rig.movement;
   report.part = "check";
   report.title = fmt::format("Has {} moved?", rig.calibration.subject.rig);
   report::Section section = {"What the session shows", {}, {}, {}};
@@ -346,14 +343,14 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
                     {"cost_mean_deg", rig.cost.mean_deg},
                     {"cost_worst_deg", rig.cost.worst_deg},
                     {"changes", Json::array()}};
-  for (const calibration::RigChange& change : movement.changes) {
+  for (const RigChange& change : movement.changes) {
     Verdict verdict = verdict_of(change);
     section.paragraphs.push_back(verdict.text + ".");
     report.numbers["changes"].push_back(json_of(change));
     if (matters(rig.cost)) report.verdicts.push_back(std::move(verdict));
   }
   if (const std::string doubt = doubt_of(movement); !doubt.empty()) section.paragraphs.push_back(doubt + ".");
-  if (movement.chi_square_after > calibration::kUnexplainedFrom) {
+  if (movement.chi_square_after > kUnexplainedFrom) {
     report.verdicts.push_back(
         {"UNEXPLAINED",
          fmt::format(
@@ -388,15 +385,14 @@ struct Look {
 };
 
 /// What the sheet reads in one more session.
-Result<void> add_sheet(const pipeline::Photographs& loaded, Size size, const fs::path& session,
+Result<void> add_sheet(const solve::Photographs& loaded, Size size, const fs::path& session,
                        const Calibration& calibration, const TaggedSheet& sheet, const JobContext& context,
-                       calibration::RigEvidence& evidence) {
+                       RigEvidence& evidence) {
   // Every reading is weighed against every other one: about 10 squares by 7, whatever the frame.
   const int side = std::max(std::max(size.width, size.height) / 10 & ~1, 16);
   const auto seen = sheet_evidence(calibration, loaded, sheet, side, session.string(), context);
   if (!seen) return seen.error();
-  for (calibration::LitPlace& place : places_of(*seen, *calibration.camera))
-    evidence.places.push_back(std::move(place));
+  for (LitPlace& place : places_of(*seen, *calibration.camera)) evidence.places.push_back(std::move(place));
   return {};
 }
 
@@ -404,16 +400,16 @@ Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
   const Result<std::vector<fs::path>> sessions = sessions_in(options.session);
   if (!sessions) return sessions.error();
   const fs::path& first = sessions->front();
-  const Result<SolvePlan> plan = plan_session({first, options.from, {}});
+  const Result<solve::SolvePlan> plan = solve::plan_session({first, options.from, {}});
   if (!plan) return plan.error();
-  const Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
+  const Result<solve::Photographs> loaded = solve::load_photographs(*plan, context);
   if (!loaded) return loaded.error();
   const fs::path folder = options.from.empty() ? first / "calibration" : options.from;
   Look out = {{{}, {}, plan->calibration, folder}, loaded->conditions.warnings, plan->lit.front().time};
   const Calibration& calibration = out.rig.calibration;
-  Result<calibration::RigEvidence> evidence = rig_evidence(calibration, *loaded);
+  Result<RigEvidence> evidence = rig_evidence(calibration, *loaded);
   if (!evidence) return std::move(evidence).error();
-  calibration::MovementOptions settings = options.movement;
+  MovementOptions settings = options.movement;
   double delta = reported_delta(folder);
   const bool is_set = first != options.session;
   if (is_set || !options.sheet.empty()) {
@@ -424,30 +420,30 @@ Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
     Result<void> added = add_sheet(*loaded, plan->size, first, calibration, *sheet, context, *evidence);
     for (const fs::path& pose : std::span(*sessions).subspan(1)) {
       if (!added) break;
-      const Result<SolvePlan> another = plan_session({pose, folder, {}});
+      const Result<solve::SolvePlan> another = solve::plan_session({pose, folder, {}});
       if (!another) return another.error();
-      const Result<pipeline::Photographs> read = load_photographs(*another, context);
+      const Result<solve::Photographs> read = solve::load_photographs(*another, context);
       if (!read) return read.error();
       added = add_sheet(*read, another->size, pose, calibration, *sheet, context, *evidence);
     }
     if (!added) return std::move(added).error();
   }
   settings.paper_delta = options.paper_delta.value_or(delta);
-  Result<calibration::Movement> movement = find_movement(calibration, *evidence, settings);
+  Result<Movement> movement = find_movement(calibration, *evidence, settings);
   if (!movement) {
     Error error = movement.error();
     error.where = options.session.string();
     return error;
   }
   out.rig.movement = std::move(*movement);
-  out.rig.cost = calibration::cost_of(*calibration.camera, std::get<NearLights>(*calibration.lights),
-                                      out.rig.movement.camera, out.rig.movement.lights);
+  out.rig.cost = cost_of(*calibration.camera, std::get<NearLights>(*calibration.lights),
+                         out.rig.movement.camera, out.rig.movement.lights);
   return out;
 }
 
 }  // namespace
 
-void describe(Fields& fields, calibration::CheckLimits& l) {
+void describe(Fields& fields, CheckLimits& l) {
   fields.value({"flat_limit_deg", "Of flat sheets, rms degrees", kAboveZero}, l.flat_rms_deg);
   fields.value({"tilted_limit_deg", "Of tilted sheets, rms degrees", kAboveZero}, l.tilted_rms_deg);
   fields.value({"gain_limit", "Of the slope gain, off 1", kAboveZero}, l.slope_gain);
@@ -545,4 +541,4 @@ Result<CalibrateOutcome> calibrate_check_rig(const CheckRigOptions& options, con
   return outcome;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -15,7 +15,7 @@
 // was checked, calibration, passed, numbers) and the report check.html and check.json; `weft calibrate
 // history` reads it.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// On evidence that the calibration was not fitted to: sheets of white paper with tags that lie flat (another
 /// one, or the same one turned) and tilted.
@@ -30,7 +30,7 @@ struct CalibrateCheckOptions {
   /// The paper's departure from Lambert's law, as `calibrate lights` reports it (-0.5 to 1); absent: of
   /// sheet.toml, else of the calibration's report, else 0.
   std::optional<double> paper_delta = {};
-  calibration::CheckLimits limits = {};
+  CheckLimits limits = {};
 };
 void describe(Fields& fields, CalibrateCheckOptions& options);
 
@@ -50,13 +50,13 @@ struct CheckRigOptions {
   std::filesystem::path sheet = {};
   std::filesystem::path output = {};       ///< as above
   std::optional<double> paper_delta = {};  ///< of patches and sheet, as above
-  calibration::MovementOptions movement = {};
+  MovementOptions movement = {};
 };
 
 /// What happened to the rig, and what it costs.
 struct RigCheck {
-  calibration::Movement movement;
-  calibration::MovementCost cost;
+  Movement movement;
+  MovementCost cost;
   Calibration calibration;     ///< that was checked
   std::filesystem::path from;  ///< its folder
 };
@@ -66,4 +66,4 @@ Result<RigCheck> look_at_rig(const CheckRigOptions& options, const JobContext& c
 /// than 0.02 degrees or 0.2 percent of albedo.
 Result<CalibrateOutcome> calibrate_check_rig(const CheckRigOptions& options, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

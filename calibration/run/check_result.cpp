@@ -9,7 +9,7 @@
 #include "core/base/iso_time.h"
 #include "core/describe/field_json.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -51,4 +51,4 @@ std::set<std::string> fitted_sha256(const fs::path& calibration) {
   return digests;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

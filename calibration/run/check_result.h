@@ -10,7 +10,7 @@
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// Writes a result folder aside and renames it: result.json and the files of the report. Nothing where
 /// `folder` is empty. `of` is "sheets" or "session". `checked_at` is when the evidence was taken, else now
@@ -25,4 +25,4 @@ double reported_delta(const std::filesystem::path& calibration);
 /// SHA-256 of the lit frames that `calibrate lights` fitted, by the same report; none where it is not there.
 std::set<std::string> fitted_sha256(const std::filesystem::path& calibration);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 std::string css(const Rgb& linear) {
@@ -46,7 +46,7 @@ report::Section differences_section(const ColorMeasurement& color) {
   row_of("mean", mean_of);
   row_of("largest", most_of);
   for (std::size_t i = 0; i < color.patches.size(); ++i) {
-    row_of(fmt::format("{} {}", color.patches[i] + 1, calibration::patch_name(color.patches[i])),
+    row_of(fmt::format("{} {}", color.patches[i] + 1, patch_name(color.patches[i])),
            [&](const std::vector<double>& list) { return list[i]; });
   }
   return {
@@ -88,10 +88,10 @@ std::string patches_svg(const ColorMeasurement& color) {
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#222\"/>\n",
-      calibration::kChartColumns * kStep + 6, calibration::kChartRows * kStep + 6);
+      kChartColumns * kStep + 6, kChartRows * kStep + 6);
   for (std::size_t i = 0; i < color.patches.size(); ++i) {
-    const int x = 6 + color.patches[i] % calibration::kChartColumns * kStep;
-    const int y = 6 + color.patches[i] / calibration::kChartColumns * kStep;
+    const int x = 6 + color.patches[i] % kChartColumns * kStep;
+    const int y = 6 + color.patches[i] / kChartColumns * kStep;
     const Rgb measured = rec709_of_camera(color.transform, color.samples[i].camera);
     svg += fmt::format(
         "<rect x=\"{0}\" y=\"{2}\" width=\"{3}\" height=\"{4}\" fill=\"{5}\"/><rect x=\"{1}\" y=\"{2}\" "
@@ -149,4 +149,4 @@ CalibrationReport report_of(const ColorMeasurement& color, const std::string& ri
   return report;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

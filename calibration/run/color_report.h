@@ -9,15 +9,15 @@
 #include "calibration/color/color_fit.h"
 #include "calibration/run/calibration_report.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// What a colour calibration found.
 struct ColorMeasurement {
   std::string reference;             ///< which values the chart was held against
   std::vector<std::string> sources;  ///< names of the pictures: a calibration is the same wherever they lie
   std::vector<int> patches;          ///< those fitted, from 0
-  std::vector<calibration::ChartSample> samples;  ///< of the patches, without shading and scale
-  calibration::ColorFit fit;
+  std::vector<ChartSample> samples;  ///< of the patches, without shading and scale
+  ColorFit fit;
   std::vector<double> by_curve, curve_left_out;  ///< CIEDE2000 of each, where a curve was fitted
   ColorTransform transform;
   double albedo_scale = 1;    ///< chart over solved albedo; of sessions
@@ -35,4 +35,4 @@ double mean_of(const std::vector<double>& values);
 /// The patches as they are fitted: each with its reference on the left, and on the right what it became.
 std::string patches_svg(const ColorMeasurement& color);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

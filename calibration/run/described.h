@@ -8,7 +8,7 @@
 
 // Fields that steps of a calibration share.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// What a step measures its part from: `says` is what lies there.
 inline void describe_input(Fields& fields, std::filesystem::path& input, const char* says) {
@@ -47,4 +47,4 @@ inline void describe_paper_delta(Fields& fields, std::optional<double>& paper_de
       paper_delta);
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

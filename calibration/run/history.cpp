@@ -17,11 +17,10 @@
 #include "core/rig/session.h"
 #include "report/plot_svg.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::ChangeKind;
 
 constexpr double kDay_s = 86400;
 
@@ -415,4 +414,4 @@ Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& opti
   return history;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

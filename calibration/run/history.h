@@ -12,7 +12,7 @@
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 struct CalibrateHistoryOptions {
   std::filesystem::path rig;       ///< folder that holds calibrations and results of checks, at any depth
@@ -61,4 +61,4 @@ struct CalibrationHistory {
 Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& options,
                                              const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

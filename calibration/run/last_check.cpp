@@ -11,7 +11,7 @@
 #include "core/base/iso_time.h"
 #include "core/describe/field_json.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,4 +84,4 @@ Json accepted_moved(const LastCheck& check, const std::string& why) {
           {"checked", check.date}};
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -9,7 +9,7 @@
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// The result of a check of a calibration (weft calibrate check -o FOLDER), in its folder, and its schema.
 inline constexpr const char* kCheckResultFile = "result.json";
@@ -51,4 +51,4 @@ Error moved_since(const LastCheck& check, std::string remedy);
 /// {"why", "degrees", "checked"}: that a person went on all the same, as a session records it.
 Json accepted_moved(const LastCheck& check, const std::string& why);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -7,12 +7,8 @@
 #include <cmath>
 #include <limits>
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
-
-using calibration::LightFit;
-
-using calibration::Pose;
 
 double tilt_deg(const Pose& pose) {
   return angle_deg(normal_of(pose), {0, 0, 1});
@@ -40,10 +36,10 @@ double rms_of(const LightsEvidence& e, const Counts& counts) {
   return n > 0 ? std::sqrt(sum / n) : 0;
 }
 double rms_of_led(const LightsEvidence& e, std::size_t led) {
-  return rms_of(e, [=](const calibration::PaperReading& r) { return r.led == led; });
+  return rms_of(e, [=](const PaperReading& r) { return r.led == led; });
 }
 double rms_of_sheet(const LightsEvidence& e, std::size_t sheet) {
-  return rms_of(e, [=](const calibration::PaperReading& r) { return r.sheet == sheet; });
+  return rms_of(e, [=](const PaperReading& r) { return r.sheet == sheet; });
 }
 
 report::Section led_section(const LightsEvidence& e) {
@@ -70,7 +66,7 @@ report::Section led_section(const LightsEvidence& e) {
       {fmt::format("Chi-square is {:.3f} for each of {:.0f} degrees of freedom, after {} iterations; from "
                    "{:.1f} on the photographs "
                    "contradict each other.",
-                   fit.chi_square, fit.degrees_of_freedom, fit.iterations, calibration::kMisfitFrom),
+                   fit.chi_square, fit.degrees_of_freedom, fit.iterations, kMisfitFrom),
        fit.leds_have_gains
            ? "The readings ask for a smooth gain of each LED's own: its light is not quite that of the model."
            : "No LED needs a gain of its own: the model of its light is enough.",
@@ -111,7 +107,7 @@ report::Section paper_section(const LightsEvidence& e) {
   section.paragraphs.push_back(
       fmt::format("Its albedo changes by {:.2f} percent from left to right and {:.2f} from bottom to top.",
                   200 * q[0], 200 * q[1]));
-  for (const calibration::PaperFault& fault : e.faults) {
+  for (const PaperFault& fault : e.faults) {
     section.paragraphs.push_back(fmt::format(
         "Left out: a {} of {:.0f} mm^2 at u = {:.0f}, v = {:.0f} mm, {:.1f} percent.",
         fault.is_fold ? "fold" : "stain", fault.area_mm2, fault.u_mm, fault.v_mm, 100 * fault.departure));
@@ -140,11 +136,11 @@ report::Section residual_section(const LightsEvidence& e) {
                               "should be noise without shape."},
                              {},
                              {}};
-  const calibration::CellGrid& grid = e.predicted->grid;
+  const CellGrid& grid = e.predicted->grid;
   for (std::size_t k = 0; k < e.start.lights.leds.size(); ++k) {
     std::vector<double> sum(grid.cells()), count(grid.cells());
     for (std::size_t i = 0; i < e.readings.size(); ++i) {
-      const calibration::PaperReading& r = e.readings[i];
+      const PaperReading& r = e.readings[i];
       if (r.led != k) continue;
       const std::size_t cell = grid.cell_of(r.x_px, r.y_px);
       sum[cell] += 100 * departure_of(*e.fit, i);
@@ -159,7 +155,7 @@ report::Section residual_section(const LightsEvidence& e) {
 }
 
 report::Section per_pixel_section(const LightsEvidence& e) {
-  const calibration::PerPixelLights& p = *e.per_pixel;
+  const PerPixelLights& p = *e.per_pixel;
   report::Section section = {"By the pixel", {}, report::Table{{"LED", "most apart deg", "rms deg"}, {}}, {}};
   section.paragraphs.push_back(
       fmt::format("Directions and intensities of {} x {} cells without a model of the LED, settled to {:.4f} "
@@ -192,7 +188,7 @@ report::Section seed_section(const LightsEvidence& e) {
                              {}};
   section.is_answer = true;
   for (std::size_t i = 0; i < e.seed->steps.size(); ++i) {
-    const calibration::SeedStep& step = e.seed->steps[i];
+    const SeedStep& step = e.seed->steps[i];
     section.table->rows.push_back(
         {fmt::format("{}", i), fmt::format("{:.4f}", 100 * step.intensity_change),
          fmt::format("{:.4f}", step.direction_change_deg), fmt::format("{:.4f}", step.paper_residual_deg),
@@ -231,7 +227,7 @@ Json numbers_of(const LightsEvidence& e) {
                                    {"residual", rms_of_sheet(e, j)}});
     }
   }
-  for (const calibration::PaperFault& f : e.faults) {
+  for (const PaperFault& f : e.faults) {
     numbers["faults"].push_back({{"kind", f.is_fold ? "fold" : "stain"},
                                  {"u_mm", f.u_mm},
                                  {"v_mm", f.v_mm},
@@ -250,7 +246,7 @@ Json numbers_of(const LightsEvidence& e) {
     numbers["per_pixel"] = {{"rounds", e.per_pixel->changes_deg.size()},
                             {"change_deg", e.per_pixel->changes_deg.back()}};
   if (e.seed) {
-    for (const calibration::SeedStep& step : e.seed->steps) {
+    for (const SeedStep& step : e.seed->steps) {
       numbers["seed"].push_back({{"intensity_change", step.intensity_change},
                                  {"direction_change_deg", step.direction_change_deg},
                                  {"paper_residual_deg", step.paper_residual_deg}});
@@ -266,7 +262,7 @@ std::string lax_gate(const LightsEvidence& e) {
   std::string text = fmt::format(
       "Chi-square of {:.2f} says that light and paper agree better than was allowed for: the gate "
       "at {:.1f} is lax by a factor of {:.1f}",
-      e.fit->chi_square, calibration::kMisfitFrom, 1 / e.fit->chi_square);
+      e.fit->chi_square, kMisfitFrom, 1 / e.fit->chi_square);
   if (e.flatness_deg > 0)
     text += fmt::format(", and --flatness below {:g} makes it as strict as it should be", e.flatness_deg);
   return text;
@@ -319,4 +315,4 @@ std::string worst_of(const LightsEvidence& e) {
                      100 * rms_of_sheet(e, sheet), led + 1, 100 * rms_of_led(e, led));
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

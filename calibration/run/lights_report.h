@@ -13,11 +13,11 @@
 #include "calibration/run/calibration_report.h"
 #include "calibration/run/sheet_captures.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// Degrees that the lights' covariance makes of a normal (rms), level and at a slope of 20 degrees, by cell.
 struct PredictedError {
-  calibration::CellGrid grid;
+  CellGrid grid;
   std::vector<double> level_deg, slope_deg;
   double centre_deg = 0, corner_deg = 0;  ///< of slope_deg; of the worst corner
 };
@@ -31,16 +31,16 @@ struct FittedSession {
 /// What a calibration of lights did, for its report.
 struct LightsEvidence {
   std::string rig;
-  calibration::PaperScene start;
+  PaperScene start;
   double flatness_deg = 0;            ///< of the sheet, as it was taken to be
   std::vector<std::string> captures;  ///< names
   std::vector<FittedSession> fitted;
-  std::vector<calibration::PaperReading> readings;
-  std::vector<calibration::PaperFault> faults;
-  std::optional<calibration::LightFit> fit;
+  std::vector<PaperReading> readings;
+  std::vector<PaperFault> faults;
+  std::optional<LightFit> fit;
   std::optional<PredictedError> predicted;
-  std::optional<calibration::PerPixelLights> per_pixel;
-  std::optional<calibration::SeedLights> seed;
+  std::optional<PerPixelLights> per_pixel;
+  std::optional<SeedLights> seed;
 };
 
 CalibrationReport lights_report(const LightsEvidence& evidence, std::vector<Verdict> verdicts);
@@ -55,4 +55,4 @@ std::string lax_gate(const LightsEvidence& evidence);
 /// Which capture and which LED depart most from the fit: "sheet03.weft (0.71 percent rms) and LED 4 (0.52)".
 std::string worst_of(const LightsEvidence& evidence);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

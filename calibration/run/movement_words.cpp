@@ -5,11 +5,8 @@
 
 #include <cctype>
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
-
-using calibration::ChangeKind;
-using calibration::RigChange;
 
 std::string with_sigma(double value, double sigma, int digits) {
   return fmt::format("{:.{}f} ± {:.{}f}", value, digits, sigma, digits);
@@ -142,4 +139,4 @@ Verdict verdict_of(const RigChange& change) {
                     : "run weft calibrate update with this session"};
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -15,12 +15,10 @@
 #include "core/rig/radiometry.h"
 #include "core/rig/suits.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::ExposureFrames;
-using calibration::ResponseFrames;
 
 constexpr double kFullShareOfFrame = 0.9;
 constexpr double kBrightShare = 0.01;  // of full photosites, at most, in frames searched for dead ones
@@ -168,7 +166,7 @@ class Reader {
         std::vector<Photosite> found = hot_photosites(*frame, 1, context_.threads);
         Image<std::uint8_t> bad(out_.size);
         mark(bad.plane(), found);
-        join(exposure.light, calibration::block_light(*frame, bad.plane()));
+        join(exposure.light, block_light(*frame, bad.plane()));
         pair_up(before, std::move(*frame), bad.plane());
         hot = file == exposure.files.front() ? std::move(found) : common(hot, found);
       }
@@ -187,7 +185,7 @@ class Reader {
         Result<RawFrame> frame = read(file);
         if (!frame) return std::move(frame).error();
         if (const auto ends_at = pile_up(*frame)) return ends_below_full(file, *ends_at, frame->white);
-        const calibration::BlockLight light = calibration::block_light(*frame, out_.bad.plane());
+        const BlockLight light = block_light(*frame, out_.bad.plane());
         const auto [least_full, most_full] =
             std::minmax_element(light.full_share.begin(), light.full_share.end());
         if (*least_full > kFullShareOfFrame) {
@@ -231,7 +229,7 @@ class Reader {
       before = std::move(frame);
       return;
     }
-    const auto points = calibration::transfer_points(*before, frame, bad);
+    const auto points = transfer_points(*before, frame, bad);
     out_.transfer.insert(out_.transfer.end(), points.begin(), points.end());
     ++out_.pairs;
     before.reset();
@@ -345,4 +343,4 @@ Result<ResponseFrames> read_response_frames(const fs::path& folder, const fs::pa
   return out;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -8,7 +8,7 @@
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// Reads dark/, ledNN/, ledNN+ledMM/ of `folder` and lists scale/ and trap/ (that of `trap`, where it names a
 /// folder): raw frames of one body, ISO and
@@ -17,8 +17,8 @@ namespace weft::app {
 /// kNoInput (no such folder, no frames), kBadData (a frame of another body, ISO, aperture or size, or not
 /// that of the calibration `from` where there is one; a developed picture; a frame that cannot be decoded; a
 /// camera that ends below what its files call full).
-Result<calibration::ResponseFrames> read_response_frames(const std::filesystem::path& folder,
-                                                         const std::filesystem::path& trap,
-                                                         const Calibration* from, const JobContext& context);
+Result<ResponseFrames> read_response_frames(const std::filesystem::path& folder,
+                                            const std::filesystem::path& trap, const Calibration* from,
+                                            const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -11,23 +11,18 @@
 
 #include "solver/conditions/light_change.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
-
-using calibration::LitPlace;
-using calibration::PixelPoint;
-using calibration::TagSighting;
 
 constexpr std::size_t kMostLooks = 3;
 constexpr double kPatchSigma = 0.02;  // of a patch's reflectance since it was measured
 constexpr double kNoReading = std::numeric_limits<double>::quiet_NaN();
 
-Image<std::uint8_t> grey_of(const pipeline::Photographs& photographs, std::size_t k) {
-  if (const pipeline::Mosaics* mosaics = photographs.mosaics())
-    return calibration::grey_picture(mosaics->frames[k]);
-  const Image<float>& rgb = std::get<pipeline::Developed>(photographs.frames).rgb[k];
+Image<std::uint8_t> grey_of(const solve::Photographs& photographs, std::size_t k) {
+  if (const solve::Mosaics* mosaics = photographs.mosaics()) return grey_picture(mosaics->frames[k]);
+  const Image<float>& rgb = std::get<solve::Developed>(photographs.frames).rgb[k];
   const std::array<View<const float>, 3> planes = {rgb.plane(0), rgb.plane(1), rgb.plane(2)};
-  return calibration::grey_picture(planes);
+  return grey_picture(planes);
 }
 
 using Polygon = std::vector<PixelPoint>;
@@ -70,13 +65,12 @@ Rect box_of(const Polygon& polygon, Size frame) {
 }
 
 // Mean reading of each channel; NaN where a photosite is full or none is there.
-std::array<double, 3> mean_in(const pipeline::Photographs& photographs, std::size_t k,
-                              const Polygon& polygon) {
+std::array<double, 3> mean_in(const solve::Photographs& photographs, std::size_t k, const Polygon& polygon) {
   const Rect box = box_of(polygon, photographs.size);
   if (box.width() <= 0 || box.height() <= 0) return {kNoReading, kNoReading, kNoReading};
   std::array<double, 3> sum = {};
   std::array<int, 3> count = {};
-  const pipeline::Planes planes = photographs.planes();
+  const solve::Planes planes = photographs.planes();
   Image<float> scratch({box.width(), box.height()});
   const std::vector<View<const float>> readings = readings_of(photographs.frames, k, box, scratch.plane());
   for (int y = box.y0; y < box.y1; ++y) {
@@ -96,14 +90,14 @@ std::array<double, 3> mean_in(const pipeline::Photographs& photographs, std::siz
 
 }  // namespace
 
-Result<std::vector<TagSighting>> tags_in(const pipeline::Photographs& photographs,
+Result<std::vector<TagSighting>> tags_in(const solve::Photographs& photographs,
                                          const std::vector<std::string>& dictionaries) {
   std::map<std::pair<std::string, int>, std::vector<TagSighting>> seen;
   const std::size_t looks = std::min(kMostLooks, photographs.count());
   for (std::size_t i = 0; i < looks && !dictionaries.empty(); ++i) {
     const Image<std::uint8_t> grey = grey_of(photographs, i * photographs.count() / looks);
     for (const std::string& dictionary : dictionaries) {
-      Result<std::vector<TagSighting>> tags = calibration::find_tags(grey.plane(), dictionary);
+      Result<std::vector<TagSighting>> tags = find_tags(grey.plane(), dictionary);
       if (!tags) return std::move(tags).error();
       for (TagSighting& tag : *tags) seen[{tag.dictionary, tag.id}].push_back(std::move(tag));
     }
@@ -138,17 +132,16 @@ WhitePatch relocated(const WhitePatch& patch, const CameraModel& before, const C
   return out;
 }
 
-Result<calibration::RigEvidence> rig_evidence(const Calibration& calibration,
-                                              const pipeline::Photographs& photographs) {
+Result<RigEvidence> rig_evidence(const Calibration& calibration, const solve::Photographs& photographs) {
   std::set<std::string> dictionaries;
   for (const Fiducial& fiducial : calibration.fiducials) dictionaries.insert(fiducial.dictionary);
   const double plane_mm = tag_height_mm(calibration.fiducials);
   Result<std::vector<TagSighting>> tags = tags_in(photographs, {dictionaries.begin(), dictionaries.end()});
   if (!tags) return std::move(tags).error();
-  calibration::RigEvidence evidence = {std::move(*tags), {}};
+  RigEvidence evidence = {std::move(*tags), {}};
 
   CameraModel now = *calibration.camera;
-  if (const auto by_tags = calibration::find_movement(calibration, evidence)) now = by_tags->camera;
+  if (const auto by_tags = find_movement(calibration, evidence)) now = by_tags->camera;
   for (const WhitePatch& patch : calibration.patches) {
     if (patch.polygon_px.size() < 3) continue;
     const double height_mm = patch.height_mm.value_or(plane_mm);
@@ -168,4 +161,4 @@ Result<calibration::RigEvidence> rig_evidence(const Calibration& calibration,
   return evidence;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

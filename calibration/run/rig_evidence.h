@@ -14,12 +14,12 @@
 
 // What photographs show of the rig itself: tags and white patches on the table.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// Tags of one dictionary each of `dictionaries`, found in the first photographs of a session; corners are
 /// means over at most three photographs in which the tag was found.
-Result<std::vector<calibration::TagSighting>> tags_in(const pipeline::Photographs& photographs,
-                                                      const std::vector<std::string>& dictionaries);
+Result<std::vector<TagSighting>> tags_in(const solve::Photographs& photographs,
+                                         const std::vector<std::string>& dictionaries);
 
 /// Height of the tags on the table, rig frame: patches lie there, too, where nobody said how high they lie.
 double tag_height_mm(const std::vector<Fiducial>& fiducials);
@@ -32,7 +32,6 @@ WhitePatch relocated(const WhitePatch& patch, const CameraModel& before, const C
 /// The tags that the calibration knows, and what its white patches read. Where tags say that the camera and
 /// the table moved to each other, the patches are looked for where they are now. `lights` of readings are
 /// those of `photographs.leds`; a LED that was left out has no reading.
-Result<calibration::RigEvidence> rig_evidence(const Calibration& calibration,
-                                              const pipeline::Photographs& photographs);
+Result<RigEvidence> rig_evidence(const Calibration& calibration, const solve::Photographs& photographs);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

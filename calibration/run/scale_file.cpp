@@ -10,10 +10,10 @@
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
-void describe_corners(Fields& fields, std::optional<calibration::ChartCorners>& corners) {
+void describe_corners(Fields& fields, std::optional<ChartCorners>& corners) {
   Json list;
   fields.value(
       {"corners_px",
@@ -54,10 +54,9 @@ Result<ScaleSettings> read_scale_file(const std::filesystem::path& file) {
     settings = std::move(*said);
   }
   if (settings.reflectances.empty()) {
-    for (const calibration::MunsellPatch& patch : calibration::munsell_scale())
-      settings.reflectances.push_back(patch.reflectance);
+    for (const MunsellPatch& patch : munsell_scale()) settings.reflectances.push_back(patch.reflectance);
   }
   return settings;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

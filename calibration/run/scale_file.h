@@ -11,12 +11,12 @@
 
 // What people write beside photographs of a grey scale: scale.toml.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// A grey scale: what its patches reflect, and where it lies.
 struct ScaleSettings {
   std::vector<double> reflectances = {};  ///< from the first patch to the last
-  std::optional<calibration::ChartCorners> corners_px = {};
+  std::optional<ChartCorners> corners_px = {};
   double height_mm = 0;             ///< of the patches above the table
   double reflectance_sigma = 0.01;  ///< relative, of each patch by itself
   double delta = 0;                 ///< it reflects 1 - delta (1 - cosine) of Lambert's law
@@ -28,4 +28,4 @@ void describe(Fields& fields, ScaleSettings& settings);
 /// wrong.
 Result<ScaleSettings> read_scale_file(const std::filesystem::path& file);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

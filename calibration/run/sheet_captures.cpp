@@ -18,11 +18,10 @@
 #include "core/rig/session.h"
 #include "core/rig/veil.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::SheetBlockGrid;
 
 constexpr double kDarkShare = 0.01;  // of the brightest LED's light: less is no light
 constexpr double kWarnFullShare = 0.01;
@@ -62,7 +61,7 @@ class SumPicture {
       std::uint16_t* to = like_.counts.plane().row(y);
       for (int x = 0; x < sum_.width(); ++x) to[x] = static_cast<std::uint16_t>(from[x] / count_);
     }
-    return calibration::grey_picture(like_);
+    return grey_picture(like_);
   }
 
  private:
@@ -118,14 +117,15 @@ class SessionReader {
 
 // Everything that can be told before a pixel is decoded.
 Result<void> SessionReader::look() {
-  Result<Session> session = read_complete_session(folder_);
+  Result<Session> session = capture::read_complete_session(folder_);
   if (!session) return std::move(session).error();
   session_ = std::move(*session);
   for (const Shot* shot : session_.lit()) lit_.push_back(*shot);
   if (lit_.empty())
     return bad_capture(folder_, "session has no lit shot", "", "take the session out of the folder");
-  FrameHeaders headers(session_, options_.calibration,
-                       "name the calibration of this rig with --from, or take the session out of the folder");
+  capture::FrameHeaders headers(
+      session_, options_.calibration,
+      "name the calibration of this rig with --from, or take the session out of the folder");
   for (const Shot& shot : session_.shots) {
     if (shot.role != ShotRole::kLit && shot.role != ShotRole::kDark) continue;
     if (Result<void> ok = headers.look_at(shot); !ok) return ok;
@@ -137,14 +137,14 @@ Result<void> SessionReader::look() {
 Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<SheetBlockGrid>& leds) {
   std::optional<RawFrame> dark;
   if (const Shot* shot = session_.dark()) {
-    Result<RawFrame> frame = read_raw_shot(session_, *shot, size());
+    Result<RawFrame> frame = capture::read_raw_shot(session_, *shot, size());
     if (!frame) return std::move(frame).error();
     dark = std::move(*frame);
   }
   SumPicture sum(size());
   const auto read_frame = [&](std::size_t i) -> Result<void> {
     const Shot& shot = lit_[i];
-    Result<RawFrame> frame = read_raw_shot(session_, shot, size());
+    Result<RawFrame> frame = capture::read_raw_shot(session_, shot, size());
     if (!frame) return std::move(frame).error();
     const Radiometry radiometry(*frame, dark ? &*dark : nullptr, *options_.calibration.response,
                                 {shot.exposure_us, shot.iso});
@@ -174,13 +174,13 @@ Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<SheetBlockGr
 Result<Image<std::uint8_t>> SessionReader::read_developed(std::vector<SheetBlockGrid>& leds) {
   Image<float> dark;
   if (const Shot* shot = session_.dark()) {
-    Result<Image<float>> image = read_developed_shot(session_, *shot);
+    Result<Image<float>> image = capture::read_developed_shot(session_, *shot);
     if (!image) return std::move(image).error();
     dark = std::move(*image);
   }
   Image<float> sum(size(), 3);
   for (const Shot& shot : lit_) {
-    Result<Image<float>> image = read_developed_shot(session_, shot);
+    Result<Image<float>> image = capture::read_developed_shot(session_, shot);
     if (!image) return std::move(image).error();
     if (!dark.empty()) subtract(*image, dark);
     scale(*image, 1 / seconds(shot));
@@ -204,20 +204,20 @@ Result<Image<std::uint8_t>> SessionReader::read_developed(std::vector<SheetBlock
   }
   const std::array<View<const float>, 3> planes = {std::as_const(sum).plane(0), std::as_const(sum).plane(1),
                                                    std::as_const(sum).plane(2)};
-  return calibration::grey_picture(planes);
+  return grey_picture(planes);
 }
 
 Result<void> SessionReader::find_pose(const Image<std::uint8_t>& grey, SheetCapture& capture) const {
   std::set<std::string> dictionaries;
-  for (const calibration::SheetTag& tag : options_.sheet.tags) dictionaries.insert(tag.dictionary);
-  std::vector<calibration::TagSighting> sightings;
+  for (const SheetTag& tag : options_.sheet.tags) dictionaries.insert(tag.dictionary);
+  std::vector<TagSighting> sightings;
   for (const std::string& dictionary : dictionaries) {
-    Result<std::vector<calibration::TagSighting>> found = calibration::find_tags(grey.plane(), dictionary);
+    Result<std::vector<TagSighting>> found = find_tags(grey.plane(), dictionary);
     if (!found) return std::move(found).error();
     sightings.insert(sightings.end(), found->begin(), found->end());
   }
   const CameraModel& camera = *options_.calibration.camera;
-  auto pose = calibration::sheet_pose(camera, sightings, options_.sheet.tags, folder_.string());
+  auto pose = sheet_pose(camera, sightings, options_.sheet.tags, folder_.string());
   if (!pose) return std::move(pose).error();
   capture.pose = *pose;
   return {};
@@ -357,7 +357,7 @@ Result<SheetCaptures> read_sheet_captures(const SheetCapturesOptions& options, c
     const Result<double> scale = exposure_scale(reader.session(), *first, *options.calibration.response);
     if (!scale) return scale.error();
     for (SheetBlockGrid& grid : capture->leds) {
-      for (calibration::BlockMean& block : grid.blocks) {
+      for (BlockMean& block : grid.blocks) {
         block.reading *= *scale;
         block.standard_error *= static_cast<float>(*scale);
       }
@@ -387,9 +387,9 @@ Result<std::vector<std::string>> lit_sha256(const Session& session) {
   return digests;
 }
 
-std::vector<calibration::PaperReading> single_blocks(const SheetCaptures& captures,
-                                                     const std::vector<std::vector<char>>& left_out) {
-  std::vector<calibration::PaperReading> readings;
+std::vector<PaperReading> single_blocks(const SheetCaptures& captures,
+                                        const std::vector<std::vector<char>>& left_out) {
+  std::vector<PaperReading> readings;
   for (std::size_t j = 0; j < captures.captures.size(); ++j) {
     const SheetCapture& capture = captures.captures[j];
     for (int row = 0; row < captures.rows; ++row) {
@@ -400,11 +400,11 @@ std::vector<calibration::PaperReading> single_blocks(const SheetCaptures& captur
         for (std::size_t k = 0; k < capture.leds.size(); ++k) {
           const SheetBlockGrid& grid = capture.leds[k];
           if (grid.columns == 0) continue;
-          calibration::PaperReading r = {j, k, grid.centre_px(column), grid.centre_px(row), {}, {}};
+          PaperReading r = {j, k, grid.centre_px(column), grid.centre_px(row), {}, {}};
           bool whole = true;
           for (int c = 0; c < 3; ++c) {
             const auto channel = static_cast<std::size_t>(c);
-            const calibration::BlockMean& mean = grid.at(column, row, c);
+            const BlockMean& mean = grid.at(column, row, c);
             whole = whole && mean.reading > 0;
             r.reading_rgb[channel] = mean.reading;
             r.relative_sigma[channel] = static_cast<double>(mean.standard_error) / mean.reading;
@@ -417,10 +417,10 @@ std::vector<calibration::PaperReading> single_blocks(const SheetCaptures& captur
   return readings;
 }
 
-std::vector<calibration::PaperReading> merged_blocks(const SheetCaptures& captures,
-                                                     const std::vector<std::vector<char>>& left_out,
-                                                     const calibration::CellGrid& cells) {
-  std::vector<calibration::PaperReading> readings;
+std::vector<PaperReading> merged_blocks(const SheetCaptures& captures,
+                                        const std::vector<std::vector<char>>& left_out,
+                                        const CellGrid& cells) {
+  std::vector<PaperReading> readings;
   for (std::size_t j = 0; j < captures.captures.size(); ++j) {
     const SheetCapture& capture = captures.captures[j];
     for (int row = 0; row < cells.rows; ++row) {
@@ -438,7 +438,7 @@ std::vector<calibration::PaperReading> merged_blocks(const SheetCaptures& captur
         }
         for (std::size_t k = 0; k < capture.leds.size(); ++k) {
           if (capture.leds[k].columns == 0 || places.empty()) continue;
-          const calibration::MergedBlock merged = merge(capture.leds[k], places);
+          const MergedBlock merged = merge(capture.leds[k], places);
           const double least =
               std::min({merged.reading_rgb[0], merged.reading_rgb[1], merged.reading_rgb[2]});
           if (2 * merged.blocks < (right - left) * (bottom - top) || !(least > 0)) continue;
@@ -450,4 +450,4 @@ std::vector<calibration::PaperReading> merged_blocks(const SheetCaptures& captur
   return readings;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

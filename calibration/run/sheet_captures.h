@@ -17,15 +17,15 @@
 
 // Sessions of a sheet of white paper, as averages of blocks.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// One session: the sheet in one pose under every LED.
 struct SheetCapture {
-  std::string name;                               ///< of the session's folder
-  calibration::SheetPose pose;                    ///< from its tags
-  std::vector<calibration::SheetBlockGrid> leds;  ///< of each LED of the rig; no columns where it was not lit
-  std::vector<char> is_paper;                     ///< by block of a grid: shows nothing but paper
-  std::vector<std::string> lit_sha256;            ///< of its lit frames, by LED
+  std::string name;                     ///< of the session's folder
+  SheetPose pose;                       ///< from its tags
+  std::vector<SheetBlockGrid> leds;     ///< of each LED of the rig; no columns where it was not lit
+  std::vector<char> is_paper;           ///< by block of a grid: shows nothing but paper
+  std::vector<std::string> lit_sha256;  ///< of its lit frames, by LED
 };
 
 /// Sessions of one sheet in several poses, block by block.
@@ -58,11 +58,11 @@ Result<std::vector<std::string>> lit_sha256(const Session& session);
 
 /// What a fit takes of captures. `left_out[capture]` marks blocks that are not to be used, by block.
 /// Single blocks, those of one place side by side for all LEDs of a capture:
-std::vector<calibration::PaperReading> single_blocks(const SheetCaptures& captures,
-                                                     const std::vector<std::vector<char>>& left_out);
+std::vector<PaperReading> single_blocks(const SheetCaptures& captures,
+                                        const std::vector<std::vector<char>>& left_out);
 /// The blocks of each cell as one, where at least half of them are paper; no more cells a side than blocks:
-std::vector<calibration::PaperReading> merged_blocks(const SheetCaptures& captures,
-                                                     const std::vector<std::vector<char>>& left_out,
-                                                     const calibration::CellGrid& cells);
+std::vector<PaperReading> merged_blocks(const SheetCaptures& captures,
+                                        const std::vector<std::vector<char>>& left_out,
+                                        const CellGrid& cells);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -11,20 +11,17 @@
 #include "core/base/files.h"
 #include "core/base/parallel.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::SheetBlockGrid;
-using calibration::SheetEvidence;
-using calibration::SheetSquare;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Averages of one photograph, a band of squares in memory at a time.
-SheetBlockGrid blocks_of(const pipeline::Photographs& photographs, std::size_t k, int square_px) {
+SheetBlockGrid blocks_of(const solve::Photographs& photographs, std::size_t k, int square_px) {
   SheetBlockGrid grid(photographs.size, square_px);
-  const pipeline::Planes planes = photographs.planes();
+  const solve::Planes planes = photographs.planes();
   Image<float> scratch({photographs.size.width, square_px});
   for (int row = 0; row < grid.rows; ++row) {
     const Rect rows = {0, row * square_px, photographs.size.width, (row + 1) * square_px};
@@ -38,21 +35,21 @@ SheetBlockGrid blocks_of(const pipeline::Photographs& photographs, std::size_t k
   return grid;
 }
 
-double normal_sigma_deg(const calibration::SheetPose& pose) {
+double normal_sigma_deg(const SheetPose& pose) {
   return degrees(std::sqrt(pose.covariance[0] + pose.covariance[7]));
 }
 
 }  // namespace
 
-Result<SheetEvidence> sheet_evidence(const Calibration& calibration, const pipeline::Photographs& photographs,
+Result<SheetEvidence> sheet_evidence(const Calibration& calibration, const solve::Photographs& photographs,
                                      const TaggedSheet& sheet, int square_px, const std::string& where,
                                      const JobContext& context) {
   const CameraModel& camera = *calibration.camera;
   std::set<std::string> dictionaries;
-  for (const calibration::SheetTag& tag : sheet.tags) dictionaries.insert(tag.dictionary);
+  for (const SheetTag& tag : sheet.tags) dictionaries.insert(tag.dictionary);
   const auto tags = tags_in(photographs, {dictionaries.begin(), dictionaries.end()});
   if (!tags) return tags.error();
-  const auto pose = calibration::sheet_pose(camera, *tags, sheet.tags, where);
+  const auto pose = sheet_pose(camera, *tags, sheet.tags, where);
   if (!pose) return pose.error();
 
   SheetEvidence evidence;
@@ -86,13 +83,12 @@ Result<SheetEvidence> sheet_evidence(const Calibration& calibration, const pipel
   return evidence;
 }
 
-std::vector<calibration::LitPlace> places_of(const SheetEvidence& sheet, const CameraModel& camera) {
-  std::vector<calibration::LitPlace> places;
+std::vector<LitPlace> places_of(const SheetEvidence& sheet, const CameraModel& camera) {
+  std::vector<LitPlace> places;
   for (const SheetSquare& square : sheet.squares) {
-    const auto point =
-        point_on_sheet(calibration::sight_of(camera, square.x_px, square.y_px), sheet.rig_from_sheet);
+    const auto point = point_on_sheet(sight_of(camera, square.x_px, square.y_px), sheet.rig_from_sheet);
     if (!point) continue;
-    calibration::LitPlace& place = places.emplace_back();
+    LitPlace& place = places.emplace_back();
     place.point_mm = *point;
     place.normal = normal_of(sheet.rig_from_sheet);
     place.on_table = false;
@@ -109,4 +105,4 @@ fs::path in_or_beside(const fs::path& folder, const char* name) {
   return absolute_folder(folder).parent_path() / name;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -10,7 +10,7 @@
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,7 +26,7 @@ std::array<double, 3> rgb_of(const std::vector<double>& one_or_three) {
 }
 
 // The place of a tag that an earlier one has, too.
-std::optional<std::size_t> twin_among(const std::vector<calibration::SheetTag>& tags) {
+std::optional<std::size_t> twin_among(const std::vector<SheetTag>& tags) {
   for (std::size_t i = 0; i < tags.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (tags[i].dictionary == tags[j].dictionary && tags[i].id == tags[j].id) return i;
@@ -75,15 +75,15 @@ Result<TaggedSheet> read_sheet_file(const fs::path& file) {
   const Result<SheetDescription> said = read_file<SheetDescription>(file, kCalibrationPage);
   if (!said) return said.error();
   TaggedSheet out;
-  calibration::Sheet& sheet = out.sheet;
+  Sheet& sheet = out.sheet;
   sheet.width_mm = said->width_mm;
   sheet.height_mm = said->height_mm;
   sheet.margin_mm = said->margin_mm;
   if (!said->reflectance.empty()) sheet.reflectance_rgb = rgb_of(said->reflectance);
   out.delta = said->delta;
   for (const SheetDescription::Tag& t : said->tags) {
-    const calibration::SheetTag& tag = out.tags.emplace_back(
-        calibration::SheetTag{t.dictionary, t.id, t.side_mm, t.centre_mm[0], t.centre_mm[1]});
+    const SheetTag& tag =
+        out.tags.emplace_back(SheetTag{t.dictionary, t.id, t.side_mm, t.centre_mm[0], t.centre_mm[1]});
     sheet.printed.push_back({tag.centre_u_mm, tag.centre_v_mm, kQuietShare * tag.side_mm});
   }
   if (const auto twin = twin_among(out.tags)) {
@@ -94,4 +94,4 @@ Result<TaggedSheet> read_sheet_file(const fs::path& file) {
   return out;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

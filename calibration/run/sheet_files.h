@@ -13,15 +13,15 @@
 
 // What people write about a sheet of white paper.
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// Where these files are described.
 inline constexpr const char* kCalibrationPage = "docs/calibration.md";
 
 /// A sheet with tags printed in its border.
 struct TaggedSheet {
-  calibration::Sheet sheet;  ///< its printed squares are the tags with their quiet zone
-  std::vector<calibration::SheetTag> tags;
+  Sheet sheet;  ///< its printed squares are the tags with their quiet zone
+  std::vector<SheetTag> tags;
   std::optional<double> delta;  ///< it reflects 1 - delta (1 - cosine) of Lambert's law; absent: nobody knows
 };
 
@@ -47,4 +47,4 @@ void describe(Fields& fields, SheetDescription& sheet);
 /// [u, v] from the sheet's centre. kBadData names the key that is unknown, missing or wrong.
 Result<TaggedSheet> read_sheet_file(const std::filesystem::path& file);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -13,13 +13,10 @@
 #include "calibration/run/rig_evidence.h"
 #include "core/base/files.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::ChangeKind;
-using calibration::Movement;
-using calibration::RigChange;
 
 bool moves_body(ChangeKind kind) {
   return kind == ChangeKind::kCamera || kind == ChangeKind::kTable;
@@ -161,7 +158,7 @@ Result<CalibrateOutcome> calibrate_update(const CalibrateUpdateOptions& options,
   const Result<RigCheck> rig = look_at_rig(
       {options.session, options.from, options.sheet, {}, options.paper_delta, options.movement}, context);
   if (!rig) return rig.error();
-  if (rig->movement.chi_square_after > calibration::kUnexplainedFrom) {
+  if (rig->movement.chi_square_after > kUnexplainedFrom) {
     return refused(
         options, "what has happened is not understood",
         fmt::format("with every change that was found, chi-square is still {:.1f} for each observation",
@@ -192,4 +189,4 @@ Result<CalibrateOutcome> calibrate_update(const CalibrateUpdateOptions& options,
   return outcome;
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -10,7 +10,7 @@
 #include "core/base/result.h"
 #include "core/describe/fields.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 struct CalibrateUpdateOptions {
   /// Taken after the move: a session, or a folder of sessions of the sheet, as CheckRigOptions has it.
@@ -19,7 +19,7 @@ struct CalibrateUpdateOptions {
   std::filesystem::path sheet = {};   ///< sheet.toml where the session shows that sheet; empty: it does not
   std::filesystem::path output = {};  ///< the new calibration, which must not be there yet
   std::optional<double> paper_delta = {};  ///< of patches and sheet, as CalibrateCheckOptions has it
-  calibration::MovementOptions movement = {};
+  MovementOptions movement = {};
 };
 void describe(Fields& fields, CalibrateUpdateOptions& options);
 
@@ -34,4 +34,4 @@ void describe(Fields& fields, CalibrateUpdateOptions& options);
 /// what moved cannot be told from something else; then nothing is written.
 Result<CalibrateOutcome> calibrate_update(const CalibrateUpdateOptions& options, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -19,7 +19,7 @@
 #include "core/rig/calibration.h"
 #include "core/rig/same_camera.h"
 
-namespace weft::app {
+namespace weft::capture {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,8 +110,7 @@ bool has_fault(const std::vector<SetupFinding>& found, std::size_t from) {
                      [](const SetupFinding& f) { return f.verdict == SetupVerdict::kFault; });
 }
 
-void examine_board_port(const capture::Rig& rig, const SystemPlaces& places,
-                        std::vector<SetupFinding>& found) {
+void examine_board_port(const Rig& rig, const SystemPlaces& places, std::vector<SetupFinding>& found) {
   std::error_code failed;
   const fs::path port = fs::weakly_canonical(rig.board.port, failed);
   if (failed || !is_there(port)) {
@@ -126,7 +125,7 @@ void examine_board_port(const capture::Rig& rig, const SystemPlaces& places,
   report_holders(holders_of(port, places), "board", port, found);
 }
 
-void examine_board(const capture::Rig& rig, const Opened& open, const SystemPlaces& places,
+void examine_board(const Rig& rig, const Opened& open, const SystemPlaces& places,
                    std::vector<SetupFinding>& found) {
   const std::size_t before = found.size();
   examine_board_port(rig, places, found);
@@ -180,12 +179,12 @@ void examine_usb(const SystemPlaces& places, std::vector<SetupFinding>& found) {
   report_thieves("camera", false, places, found);
 }
 
-void examine_camera(const capture::Rig& rig, const Opened& open, const SystemPlaces& places,
+void examine_camera(const Rig& rig, const Opened& open, const SystemPlaces& places,
                     std::vector<SetupFinding>& found) {
   const std::size_t before = found.size();
   if (!rig.camera.port.starts_with("ptpip:")) examine_usb(places, found);
   if (has_fault(found, before) || !open.camera) return;
-  const Result<capture::CameraFacts> facts = open.camera();
+  const Result<CameraFacts> facts = open.camera();
   if (!facts) {
     found.push_back(fault_of("camera", facts.error()));
     return;
@@ -197,7 +196,7 @@ void examine_camera(const capture::Rig& rig, const Opened& open, const SystemPla
   if (facts->battery < kLowBattery)
     found.push_back(
         {SetupVerdict::kWarning, "camera", "its battery will not last", "charge it, or use mains power"});
-  if (capture::camera_serial(rig).empty())
+  if (camera_serial(rig).empty())
     found.push_back({SetupVerdict::kWarning, "camera", "the rig file takes any camera",
                      fmt::format("write serial = \"{}\" under [camera]", facts->serial)});
   if (std::abs(facts->clock_offset_s) > 60 + facts->clock_uncertainty_s)
@@ -226,7 +225,7 @@ void examine_room(const std::string& part, const fs::path& folder, std::uint64_t
   }
 }
 
-void examine_calibration(const capture::Rig& rig, std::vector<SetupFinding>& found) {
+void examine_calibration(const Rig& rig, std::vector<SetupFinding>& found) {
   if (rig.scan.calibration.empty()) {
     found.push_back({SetupVerdict::kWarning, "calibration",
                      "the rig file names none: frames are not compared with it",
@@ -309,21 +308,20 @@ std::vector<Holder> holders_of(const fs::path& file, const SystemPlaces& places)
   return holders;
 }
 
-std::vector<SetupFinding> examine_rig(const capture::Rig& rig, const Opened& open,
-                                      const SystemPlaces& places) {
+std::vector<SetupFinding> examine_rig(const Rig& rig, const Opened& open, const SystemPlaces& places) {
   std::vector<SetupFinding> found;
   examine_board(rig, open, places, found);
   examine_camera(rig, open, places, found);
   return found;
 }
 
-std::vector<SetupFinding> examine_folders(const capture::Rig& rig, std::uint64_t frame_bytes) {
+std::vector<SetupFinding> examine_folders(const Rig& rig, std::uint64_t frame_bytes) {
   std::vector<SetupFinding> found;
   examine_calibration(rig, found);
   examine_room("disk", rig.scan.sessions, frame_bytes, found);
   if (!rig.scan.copy.empty()) {
     examine_room("second disk", rig.scan.copy, frame_bytes, found);
-    if (const auto one_disk = capture::warning_of_one_disk(rig.scan.sessions, rig.scan.copy)) {
+    if (const auto one_disk = warning_of_one_disk(rig.scan.sessions, rig.scan.copy)) {
       found.push_back(
           {SetupVerdict::kWarning, "second disk", *one_disk, "mount it, or name a folder on another disk"});
     }
@@ -332,4 +330,4 @@ std::vector<SetupFinding> examine_folders(const capture::Rig& rig, std::uint64_t
   return found;
 }
 
-}  // namespace weft::app
+}  // namespace weft::capture

@@ -12,7 +12,7 @@
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 
-namespace weft::app {
+namespace weft::capture {
 
 /// What is right or wrong with one part of a rig's set-up.
 struct SetupFinding {
@@ -59,17 +59,16 @@ std::vector<Holder> holders_of(const std::filesystem::path& file, const SystemPl
 /// What the devices say of themselves when they are opened. Empty functions: they are looked at from outside.
 struct Opened {
   std::function<Result<std::string>()> board;  ///< its greeting in words
-  std::function<Result<capture::CameraFacts>()> camera;
+  std::function<Result<CameraFacts>()> camera;
 };
 /// Board and camera: permissions, who holds them (ModemManager and brltty take boards, gvfs takes cameras),
 /// who is known to take them and runs, the camera's USB speed; then what each says when it is opened, unless
 /// its port has a fault already, which says more. A user may not see what root's processes hold: where the
 /// board does not answer and a program runs that takes boards, that is a fault too.
-std::vector<SetupFinding> examine_rig(const capture::Rig& rig, const Opened& open,
-                                      const SystemPlaces& places = {});
+std::vector<SetupFinding> examine_rig(const Rig& rig, const Opened& open, const SystemPlaces& places = {});
 
 /// Room for sessions of `frame_bytes` a frame, whether the folders can be written, the calibration, the
 /// machine's clock.
-std::vector<SetupFinding> examine_folders(const capture::Rig& rig, std::uint64_t frame_bytes);
+std::vector<SetupFinding> examine_folders(const Rig& rig, std::uint64_t frame_bytes);
 
-}  // namespace weft::app
+}  // namespace weft::capture

@@ -6,7 +6,7 @@
 #include "core/rig/radiometry.h"
 #include "core/rig/veil.h"
 
-namespace weft::app {
+namespace weft::capture {
 
 Image<float> half_size_picture(const RawFrame& frame, const Response& response) {
   const Radiometry radiometry(frame, nullptr, response, {1e6, 100});
@@ -36,4 +36,4 @@ Image<float> half_size_picture(const RawFrame& frame, const Response& response) 
   return half;
 }
 
-}  // namespace weft::app
+}  // namespace weft::capture

@@ -13,16 +13,16 @@
 #include "core/rig/same_camera.h"
 #include "core/rig/suits.h"
 
-namespace weft::app {
+namespace weft::capture {
 namespace {
 
 namespace fs = std::filesystem;
 
-Result<capture::RawInfo> header_of(const fs::path& file) {
-  if (!is_linear_image(file)) return capture::read_raw_info(file);
+Result<RawInfo> header_of(const fs::path& file) {
+  if (!is_linear_image(file)) return read_raw_info(file);
   Result<ImageFileInfo> info = read_linear_image_info(file);
   if (!info) return std::move(info).error();
-  return capture::RawInfo{info->size, {}, {}};
+  return RawInfo{info->size, {}, {}};
 }
 
 Result<void> check_digest(const fs::path& file, const Shot& shot) {
@@ -55,7 +55,7 @@ Result<void> FrameHeaders::look_at(const Shot& shot) {
     return Error{ErrorKind::kBadData, "session mixes raw and developed frames", file.string(),
                  "all frames must be of one kind", "export them all the same way"};
   }
-  const Result<capture::RawInfo> info = header_of(file);
+  const Result<RawInfo> info = header_of(file);
   if (!info) return info.error();
   if (is_first) {
     first_file_ = shot.file;
@@ -110,7 +110,7 @@ Result<void> FrameHeaders::check_calibration(const fs::path& file, Size size,
 Result<RawFrame> read_raw_shot(const Session& session, const Shot& shot, Size size) {
   const fs::path file = session.path_of(shot);
   if (Result<void> same = check_digest(file, shot); !same) return std::move(same).error();
-  return capture::decode_raw(file, {.size = size});
+  return decode_raw(file, {.size = size});
 }
 
 Result<Image<float>> read_developed_shot(const Session& session, const Shot& shot) {
@@ -119,4 +119,4 @@ Result<Image<float>> read_developed_shot(const Session& session, const Shot& sho
   return read_linear_image(file, Transfer::kLinear, Clipped::kMark, NotNumbers::kMark);
 }
 
-}  // namespace weft::app
+}  // namespace weft::capture

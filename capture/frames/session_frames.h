@@ -12,7 +12,7 @@
 
 // The frames of a session as every job reads them, with one set of refusals.
 
-namespace weft::app {
+namespace weft::capture {
 
 /// A session whose scan came to its end; kBadData for another. Errors as read_session().
 Result<Session> read_complete_session(const std::filesystem::path& folder);
@@ -54,4 +54,4 @@ Result<RawFrame> read_raw_shot(const Session& session, const Shot& shot, Size si
 /// The same of a developed frame, linear, with full and meaningless values marked.
 Result<Image<float>> read_developed_shot(const Session& session, const Shot& shot);
 
-}  // namespace weft::app
+}  // namespace weft::capture

@@ -5,7 +5,7 @@
 
 #include "core/describe/described_fields.h"
 
-namespace weft::app {
+namespace weft::capture {
 
 /// What `weft copy` and a job that copies are told.
 struct CopyRequest {
@@ -21,4 +21,4 @@ inline void describe(Fields& fields, CopyRequest& request) {
                request.to);
 }
 
-}  // namespace weft::app
+}  // namespace weft::capture

@@ -20,12 +20,10 @@
 #include "exchange/u3m/u3m.h"
 #include "exchange/usd/usd.h"
 
-namespace weft::app {
+namespace weft::exchange {
 namespace {
 
 namespace fs = std::filesystem;
-using exchange::Document;
-using exchange::DocumentKind;
 
 constexpr std::size_t kMostTextureBytes = std::size_t{1} << 32;
 constexpr const char* kWeightsFile = "layers/weights.png";
@@ -34,8 +32,8 @@ constexpr const char* kWeightsFile = "layers/weights.png";
 struct DocumentInput {
   const ClothTextures& cloth;
   const fs::path& folder;
-  exchange::TexturedMaterial material;
-  exchange::FileBytes bytes;  ///< of textures, where a document holds them
+  TexturedMaterial material;
+  FileBytes bytes;  ///< of textures, where a document holds them
 };
 
 std::string with_ending(const std::string& name, const std::string& ending) {
@@ -52,8 +50,8 @@ std::string text_in(const Json& metadata, const char* key) {
 }
 
 // What the session says of the cloth. Without one the times are those of nothing.
-exchange::U3mOptions u3m_options(const DocumentInput& input) {
-  exchange::U3mOptions options;
+U3mOptions u3m_options(const DocumentInput& input) {
+  U3mOptions options;
   options.description = "Scanned with weft";
   options.digest = sha256_of(input.cloth.preset.inputs.dump());
   options.created = options.modified = "1970-01-01T00:00:00Z";
@@ -66,49 +64,49 @@ exchange::U3mOptions u3m_options(const DocumentInput& input) {
   options.physics.thickness_mm = number_in(metadata, "thickness_mm");
   options.physics.weight_g_m2 = number_in(metadata, "weight_g_m2");
   options.physics.construction = text_in(metadata, "construction");
-  if (auto fibres = exchange::fibres_of(text_in(metadata, "composition")))
+  if (auto fibres = fibres_of(text_in(metadata, "composition")))
     options.physics.composition = std::move(*fibres);
   return options;
 }
 
 Result<Document> materialx(const DocumentInput& input) {
-  using enum exchange::SurfaceModel;
-  return exchange::materialx_of(input.material, {.models = {kOpenPbr, kStandardSurface, kGltfPbr}});
+  using enum SurfaceModel;
+  return materialx_of(input.material, {.models = {kOpenPbr, kStandardSurface, kGltfPbr}});
 }
 
 Result<Document> usda(const DocumentInput& input) {
-  exchange::UsdOptions options;
-  for (const exchange::PresetDocument& each : input.cloth.preset.documents) {
+  UsdOptions options;
+  for (const PresetDocument& each : input.cloth.preset.documents) {
     if (each.kind == DocumentKind::kMaterialX) options.materialx_file = each.name;
   }
-  return exchange::usda_of(input.material, options);
+  return usda_of(input.material, options);
 }
 
 // An archive of a document and its textures.
 Result<Document> packed(Result<Document> inner, const DocumentInput& input, const std::string& name) {
   if (!inner) return inner;
   const bool is_usdz = name.ends_with(".usdz");
-  Result<std::string> archive = is_usdz ? exchange::usdz_of(with_ending(name, ".usda"), *inner, input.bytes)
-                                        : exchange::u3ma_of(with_ending(name, ".u3m"), *inner, input.bytes);
+  Result<std::string> archive = is_usdz ? usdz_of(with_ending(name, ".usda"), *inner, input.bytes)
+                                        : u3ma_of(with_ending(name, ".u3m"), *inner, input.bytes);
   if (!archive) return std::move(archive).error();
   inner->bytes = std::move(*archive);
   return inner;
 }
 
-Result<Document> document_bytes(const exchange::PresetDocument& asked, const DocumentInput& input) {
+Result<Document> document_bytes(const PresetDocument& asked, const DocumentInput& input) {
   switch (asked.kind) {
     case DocumentKind::kGlb:
-      return exchange::glb_of(input.material, input.bytes);
+      return glb_of(input.material, input.bytes);
     case DocumentKind::kMaterialX:
       return materialx(input);
     case DocumentKind::kUsda:
       return usda(input);
     case DocumentKind::kUsdz:
-      return packed(exchange::usda_of(input.material), input, asked.name);
+      return packed(usda_of(input.material), input, asked.name);
     case DocumentKind::kU3m:
-      return exchange::u3m_of(input.material, u3m_options(input));
+      return u3m_of(input.material, u3m_options(input));
     case DocumentKind::kU3ma:
-      return packed(exchange::u3m_of(input.material, u3m_options(input)), input, asked.name);
+      return packed(u3m_of(input.material, u3m_options(input)), input, asked.name);
     case DocumentKind::kLayers:
       break;
   }
@@ -127,14 +125,14 @@ Result<ExportedDocument> written(const fs::path& folder, const std::string& name
                           .left_out = std::move(document.left_out)};
 }
 
-Result<ExportedDocument> write_document(const exchange::PresetDocument& asked, const DocumentInput& input) {
+Result<ExportedDocument> write_document(const PresetDocument& asked, const DocumentInput& input) {
   Result<Document> document = document_bytes(asked, input);
   if (!document) {
     Error error = std::move(document).error();
     error.where = fmt::format("preset {}: {}: {}", input.cloth.preset.preset.name, asked.name, error.where);
     return error;
   }
-  return written(input.folder, asked.name, exchange::kDocumentKindNames[static_cast<std::size_t>(asked.kind)],
+  return written(input.folder, asked.name, kDocumentKindNames[static_cast<std::size_t>(asked.kind)],
                  std::move(*document));
 }
 
@@ -149,8 +147,8 @@ void remove_textures(const std::vector<ExportedTexture>& textures, const fs::pat
 }
 
 // Weights as 8 bits, which are what vertex colours have too; nothing where those are the weights.
-Result<std::optional<exchange::Texture>> write_weights(const RuntimeStack& stack, const fs::path& folder) {
-  if (stack.weights == "vertex-color") return std::optional<exchange::Texture>();
+Result<std::optional<Texture>> write_weights(const material::RuntimeStack& stack, const fs::path& folder) {
+  if (stack.weights == "vertex-color") return std::optional<Texture>();
   const Result<LoadedImage> image = read_image(stack.layers.front().folder / stack.weights);
   if (!image) return image.error();
   const std::vector<View<const float>> planes = {image->channel("R"), image->channel("G"),
@@ -163,7 +161,7 @@ Result<std::optional<exchange::Texture>> write_weights(const RuntimeStack& stack
   const WriteOptions options = {.type = SampleType::kUint8, .compression = Compression::kZip};
   if (Result<void> ok = write_image(folder / kWeightsFile, planes, {"R", "G", "B"}, options); !ok)
     return std::move(ok).error();
-  return std::optional<exchange::Texture>(
+  return std::optional<Texture>(
       {.file = kWeightsFile, .size = image->info.size, .bits = 8, .channels = "rgb"});
 }
 
@@ -176,9 +174,8 @@ bool is_plain(const std::vector<ExportedTexture>& textures) {
 }
 
 // All layers, bottom to top.
-std::vector<exchange::TexturedMaterial> materials_of(const exchange::TexturedMaterial& lowest,
-                                                     const ClothLayers& layers) {
-  std::vector<exchange::TexturedMaterial> materials = {lowest};
+std::vector<TexturedMaterial> materials_of(const TexturedMaterial& lowest, const ClothLayers& layers) {
+  std::vector<TexturedMaterial> materials = {lowest};
   for (const ClothTextures& layer : layers.above) {
     materials.push_back(textured_material(layer));
     // What is the same everywhere covers any rectangle.
@@ -210,14 +207,13 @@ Result<std::vector<ExportedDocument>> write_layers(const std::string& list_name,
     if (done) documents.push_back(std::move(*done));
     return done ? Result<void>() : Result<void>(std::move(done).error());
   };
-  const Result<std::optional<exchange::Texture>> weights = write_weights(layers.stack, input.folder);
+  const Result<std::optional<Texture>> weights = write_weights(layers.stack, input.folder);
   if (!weights) return weights.error();
-  Result<Document> mix =
-      exchange::materialx_mix_of(name, materials_of(input.material, layers), {*weights}, {});
+  Result<Document> mix = materialx_mix_of(name, materials_of(input.material, layers), {*weights}, {});
   if (!mix) return std::move(mix).error();
   if (Result<void> ok = write(name + "_layers.mtlx", "mtlx", std::move(*mix)); !ok)
     return std::move(ok).error();
-  RuntimeStack shown = layers.stack;
+  material::RuntimeStack shown = layers.stack;
   if (*weights) {
     Result<std::string> bytes = read_text(input.folder / kWeightsFile);
     if (!bytes) return std::move(bytes).error();
@@ -226,7 +222,7 @@ Result<std::vector<ExportedDocument>> write_layers(const std::string& list_name,
     shown.weights = kWeightsFile;
   }
   const std::map<std::string, std::vector<std::string>> files = files_by_id(input.cloth, layers);
-  Document list = {.bytes = layers_json(shown, files).dump(2) + "\n"};
+  Document list = {.bytes = material::layers_json(shown, files).dump(2) + "\n"};
   for (const auto& [id, names] : files) list.files.insert(list.files.end(), names.begin(), names.end());
   if (Result<void> ok = write(list_name, "layers", std::move(list)); !ok) return std::move(ok).error();
   return documents;
@@ -235,9 +231,8 @@ Result<std::vector<ExportedDocument>> write_layers(const std::string& list_name,
 // The textures' bytes, where a document holds them.
 Result<std::map<std::string, std::string>> held_bytes(const ClothTextures& cloth, const fs::path& folder) {
   std::map<std::string, std::string> held;
-  const bool holds = std::ranges::any_of(cloth.preset.documents, [](const exchange::PresetDocument& each) {
-    return exchange::holds_its_files(each.kind);
-  });
+  const bool holds = std::ranges::any_of(
+      cloth.preset.documents, [](const PresetDocument& each) { return holds_its_files(each.kind); });
   if (!holds) return held;
   for (const ExportedTexture& texture : cloth.textures) {
     Result<std::string> bytes = read_text(folder / texture.file, kMostTextureBytes);
@@ -257,14 +252,14 @@ Result<std::vector<ExportedDocument>> write_documents(const ClothTextures& cloth
   const Result<std::map<std::string, std::string>> held = held_bytes(cloth, folder);
   if (!held) return held.error();
   const DocumentInput input = {cloth, folder, textured_material(cloth), {held->begin(), held->end()}};
-  for (const exchange::PresetDocument& asked : preset.documents) {
+  for (const PresetDocument& asked : preset.documents) {
     if (asked.kind == DocumentKind::kLayers) continue;
     Result<ExportedDocument> document = write_document(asked, input);
     if (!document) return std::move(document).error();
     documents.push_back(std::move(*document));
   }
   if (preset.preset.keeps_no_files()) remove_textures(cloth.textures, folder);
-  for (const exchange::PresetDocument& asked : preset.documents) {
+  for (const PresetDocument& asked : preset.documents) {
     if (asked.kind != DocumentKind::kLayers) continue;
     Result<std::vector<ExportedDocument>> mixed = write_layers(asked.name, layers, input);
     if (!mixed) return mixed;
@@ -273,4 +268,4 @@ Result<std::vector<ExportedDocument>> write_documents(const ClothTextures& cloth
   return documents;
 }
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -9,11 +9,11 @@
 #include "exchange/presets/export_facts.h"
 #include "material/assets/runtime.h"
 
-namespace weft::app {
+namespace weft::exchange {
 
 /// The layers of a material that is mixed while it is drawn.
 struct ClothLayers {
-  const RuntimeStack& stack;
+  const material::RuntimeStack& stack;
   std::vector<ClothTextures> above;  ///< all of the stack but the lowest, which is the cloth itself
 };
 
@@ -24,4 +24,4 @@ struct ClothLayers {
 Result<std::vector<ExportedDocument>> write_documents(const ClothTextures& cloth, const ClothLayers& layers,
                                                       const std::filesystem::path& folder);
 
-}  // namespace weft::app
+}  // namespace weft::exchange

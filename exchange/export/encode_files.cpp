@@ -16,11 +16,10 @@
 #include "exchange/export/map_planes.h"
 #include "exchange/export/texture_file.h"
 
-namespace weft::app {
+namespace weft::exchange {
 namespace {
 
 namespace fs = std::filesystem;
-using exchange::MapPlane;
 
 // One texture to encode, and everywhere it goes: the first place is written, the others are copies.
 struct Task {
@@ -31,7 +30,7 @@ struct Task {
 };
 
 // What makes two textures alike, whatever preset asks for them.
-std::string key_of(const FilledPreset& filled, const exchange::PresetFile& file) {
+std::string key_of(const FilledPreset& filled, const PresetFile& file) {
   const bool has_roughness = std::ranges::any_of(
       file.channels, [](const std::string& channel) { return channel.starts_with("roughness"); });
   return fmt::format(
@@ -57,20 +56,20 @@ std::vector<Task> tasks_of(const std::vector<EncodeTarget>& targets) {
 std::set<MapPlane> planes_of(const TextureToWrite& texture) {
   std::set<MapPlane> planes;
   for (const std::string& name : texture.file.channels) {
-    const std::vector<MapPlane>& needed = exchange::channel_named(name)->planes;
+    const std::vector<MapPlane>& needed = channel_named(name)->planes;
     planes.insert(needed.begin(), needed.end());
   }
   return planes;
 }
 
-bool has_any(const exchange::PresetFile& file, std::initializer_list<const char*> channels) {
+bool has_any(const PresetFile& file, std::initializer_list<const char*> channels) {
   return std::ranges::any_of(channels, [&](const char* channel) {
     return std::ranges::find(file.channels, channel) != file.channels.end();
   });
 }
 
-ExportedChannel exported_channel(const TextureInput& input, const exchange::ChannelLoss& loss) {
-  const exchange::Channel& channel = *exchange::channel_named(loss.channel);
+ExportedChannel exported_channel(const TextureInput& input, const ChannelLoss& loss) {
+  const Channel& channel = *channel_named(loss.channel);
   ExportedChannel facts = {
       .name = loss.channel,
       .unit = channel.unit,
@@ -80,37 +79,36 @@ ExportedChannel exported_channel(const TextureInput& input, const exchange::Chan
       .lost = {loss.mean_abs, loss.most_abs},
       .cut_share = static_cast<double>(loss.cut) / static_cast<double>(input.size.pixels())};
   if (input.file.stored.is_float()) return facts;
-  const exchange::ChannelRange range = exchange::range_of(channel, input.facts);
+  const ChannelRange range = range_of(channel, input.facts);
   facts.at_0 = range.least;
   facts.at_1 = range.most;
   return facts;
 }
 
 // But for its name and its bytes.
-ExportedTexture exported_texture(const TextureInput& input, exchange::Loss loss) {
-  const exchange::PresetFile& file = input.file;
+ExportedTexture exported_texture(const TextureInput& input, Loss loss) {
+  const PresetFile& file = input.file;
   ExportedTexture facts = {.size = input.size,
                            .levels = levels_of(file, input.size),
                            .encoding = words_of(file.stored),
                            .color = file.stored.color};
   if (has_any(file, {"normal.y", "detail.normal.y"}))
-    facts.direction = exchange::kNormalDirectionNames[static_cast<std::size_t>(file.direction)];
+    facts.direction = kNormalDirectionNames[static_cast<std::size_t>(file.direction)];
   if (has_any(file, {"roughness", "roughness.least"}))
-    facts.roughness = exchange::kRoughnessConventionNames[static_cast<std::size_t>(input.facts.roughness)];
-  for (const exchange::ChannelLoss& channel : loss.channels)
-    facts.channels.push_back(exported_channel(input, channel));
+    facts.roughness = kRoughnessConventionNames[static_cast<std::size_t>(input.facts.roughness)];
+  for (const ChannelLoss& channel : loss.channels) facts.channels.push_back(exported_channel(input, channel));
   facts.lost = std::move(loss);
   return facts;
 }
 
 // By the file as it reads back.
-Result<exchange::Loss> loss_of(const fs::path& path, const TextureInput& input, int threads) {
+Result<Loss> loss_of(const fs::path& path, const TextureInput& input, int threads) {
   Result<Image<float>> read = read_texture(path, input, threads);
   if (!read) return std::move(read).error();
-  exchange::Loss loss = exchange::measure_loss(input.file, input.planes, input.facts, std::move(*read));
+  Loss loss = measure_loss(input.file, input.planes, input.facts, std::move(*read));
   if (levels_of(input.file, input.size) == 1) {
     loss.by_distance =
-        exchange::loss_by_distance(input.file, input.planes, input.facts, input.lobe, input.size, threads);
+        loss_by_distance(input.file, input.planes, input.facts, input.lobe, input.size, threads);
   }
   return loss;
 }
@@ -128,7 +126,7 @@ class Encoder {
 
  private:
   Result<void> run_together(const std::vector<Task*>& tasks, Size size);
-  Result<void> run_one(Task& task, const MapPlanes& planes, const exchange::ChannelFacts& facts, int threads);
+  Result<void> run_one(Task& task, const MapPlanes& planes, const ChannelFacts& facts, int threads);
   Result<void> copy(const Task& task, const ExportedTexture& first);
   const std::string& name_at(std::pair<std::size_t, std::size_t> place) const {
     return targets_[place.first].preset->textures[place.second].name;
@@ -172,12 +170,11 @@ Result<void> Encoder::copy(const Task& task, const ExportedTexture& first) {
   return {};
 }
 
-Result<void> Encoder::run_one(Task& task, const MapPlanes& planes, const exchange::ChannelFacts& facts,
-                              int threads) {
+Result<void> Encoder::run_one(Task& task, const MapPlanes& planes, const ChannelFacts& facts, int threads) {
   if (context_.stop.stop_requested()) return interrupted();
   const fs::path path = path_of(task.places.front());
   if (Result<void> ok = make_writable_folder(path.parent_path()); !ok) return ok;
-  const exchange::PresetFile& file = task.texture->file;
+  const PresetFile& file = task.texture->file;
   TextureInput input = {.file = file,
                         .planes = planes.planes(),
                         .facts = facts,
@@ -192,7 +189,7 @@ Result<void> Encoder::run_one(Task& task, const MapPlanes& planes, const exchang
   Stopwatch watch;
   if (Result<void> ok = write_texture(path, input, threads); !ok) return ok;
   task.seconds = watch.lap();
-  Result<exchange::Loss> loss = loss_of(path, input, threads);
+  Result<Loss> loss = loss_of(path, input, threads);
   if (!loss) return std::move(loss).error();
   ExportedTexture texture = exported_texture(input, std::move(*loss));
   texture.file = task.texture->name;
@@ -212,7 +209,7 @@ Result<void> Encoder::run_together(const std::vector<Task*>& tasks, Size size) {
   if (!fits_memory(tasks, size)) {
     for (Task* task : tasks) {
       if (Result<void> ok = planes.load(planes_of(*task->texture)); !ok) return ok;
-      const exchange::ChannelFacts facts = channel_facts(folder_, planes.planes());
+      const ChannelFacts facts = channel_facts(folder_, planes.planes());
       if (Result<void> ok = run_one(*task, planes, facts, context_.threads); !ok) return ok;
     }
     return {};
@@ -220,7 +217,7 @@ Result<void> Encoder::run_together(const std::vector<Task*>& tasks, Size size) {
   std::set<MapPlane> all;
   for (const Task* task : tasks) all.merge(planes_of(*task->texture));
   if (Result<void> ok = planes.load(all); !ok) return ok;
-  const exchange::ChannelFacts facts = channel_facts(folder_, planes.planes());
+  const ChannelFacts facts = channel_facts(folder_, planes.planes());
   std::vector<std::optional<Error>> errors(tasks.size());
   const int threads = resolved_threads(context_.threads);
   parallel_for(tasks.size(), threads, [&](std::size_t i, int) {
@@ -257,4 +254,4 @@ Result<std::vector<EncodedTextures>> encode_files(const MapFolder& folder,
   return Encoder(folder, targets, is_dx10, context).run();
 }
 
-}  // namespace weft::app
+}  // namespace weft::exchange

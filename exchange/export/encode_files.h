@@ -10,7 +10,7 @@
 #include "exchange/export/prepare.h"
 #include "exchange/presets/export_facts.h"
 
-namespace weft::app {
+namespace weft::exchange {
 
 /// Where the textures of one preset go.
 struct EncodeTarget {
@@ -31,4 +31,4 @@ Result<std::vector<EncodedTextures>> encode_files(const MapFolder& folder,
                                                   const std::vector<EncodeTarget>& targets, bool is_dx10,
                                                   const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::exchange

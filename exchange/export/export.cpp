@@ -16,11 +16,11 @@
 #include "core/base/product.h"
 #include "exchange/export/documents.h"
 #include "exchange/export/encode_files.h"
-#include "exchange/export/prepare.h"
 #include "exchange/export/export_price.h"
+#include "exchange/export/prepare.h"
 #include "exchange/export/textured.h"
 
-namespace weft::app {
+namespace weft::exchange {
 namespace {
 
 namespace fs = std::filesystem;
@@ -165,10 +165,10 @@ void drop_numbers(const std::vector<ExportedDocument>& documents, const fs::path
 }
 
 // The source of the map that a channel comes from; "assumed" where it comes from none.
-std::string source_of_channel(const MapFolder& folder, const exchange::Channel& channel) {
-  for (const exchange::MapPlane plane : channel.planes) {
-    const std::string name = exchange::kind_of(plane).map;
-    const MapFacts* map = folder.map(name);
+std::string source_of_channel(const MapFolder& folder, const Channel& channel) {
+  for (const MapPlane plane : channel.planes) {
+    const std::string name = kind_of(plane).map;
+    const material::MapFacts* map = folder.map(name);
     if (map == nullptr && name == "specular") map = folder.map("f0");
     if (map != nullptr) return name_of(map->source);
   }
@@ -180,8 +180,8 @@ std::string source_of_channel(const MapFolder& folder, const exchange::Channel& 
 std::string distance_note(const std::vector<ExportedTexture>& textures) {
   constexpr double kNothing = 0.02;
   for (const ExportedTexture& texture : textures) {
-    const exchange::DistanceLoss* seen = nullptr;
-    for (const exchange::DistanceLoss& each : texture.lost.by_distance) {
+    const DistanceLoss* seen = nullptr;
+    for (const DistanceLoss& each : texture.lost.by_distance) {
       if (each.level <= kToldDistance) seen = &each;
     }
     if (seen == nullptr || seen->mean_abs <= kNothing * seen->mean) continue;
@@ -202,7 +202,7 @@ ExportFacts export_facts(const FilledPreset& preset, const MapFolder& folder, co
       .name = preset.name,
       .title = preset.title,
       .normal = preset.preset.normal,
-      .roughness = exchange::kRoughnessConventionNames[static_cast<std::size_t>(preset.preset.roughness)],
+      .roughness = kRoughnessConventionNames[static_cast<std::size_t>(preset.preset.roughness)],
       .size = preset.size,
       .is_tile = folder.is_tile,
       .albedo_scale = folder.albedo_scale,
@@ -217,7 +217,7 @@ ExportFacts export_facts(const FilledPreset& preset, const MapFolder& folder, co
   if (const std::string note = distance_note(textures); !note.empty()) facts.notes.push_back(note);
   for (ExportedTexture& texture : textures) {
     for (ExportedChannel& channel : texture.channels)
-      channel.source = source_of_channel(folder, *exchange::channel_named(channel.name));
+      channel.source = source_of_channel(folder, *channel_named(channel.name));
     if (preset.preset.keeps_no_files()) texture.inside = preset.documents.front().name;
   }
   facts.files = std::move(textures);
@@ -286,4 +286,4 @@ Result<std::vector<ExportReport>> export_maps(const ExportOptions& asked, const 
   return reports;
 }
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -10,7 +10,7 @@
 #include "exchange/export/export_request.h"
 #include "exchange/presets/export_facts.h"
 
-namespace weft::app {
+namespace weft::exchange {
 
 /// The farthest level of `lost.by_distance` that people are told of: 8 times as far.
 inline constexpr int kToldDistance = 3;
@@ -34,4 +34,4 @@ struct ExportReport {
 /// something else; kInputOutput; kInterrupted.
 Result<std::vector<ExportReport>> export_maps(const ExportOptions& options, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -15,22 +15,18 @@
 #include "exchange/export/map_planes.h"
 #include "exchange/export/texture_file.h"
 
-namespace weft::app {
+namespace weft::exchange {
 namespace {
 
 namespace fs = std::filesystem;
-using exchange::BlockFormat;
-using exchange::Encoding;
-using exchange::PresetFile;
-using exchange::Stored;
 
 constexpr int kPiecePx = 512;
 constexpr int kTrials = 2;  // the quicker one counts, as the first also warms caches
 
 // A piece from the middle of the maps.
 struct Piece {
-  exchange::SourcePlanes planes;
-  exchange::ChannelFacts facts;
+  SourcePlanes planes;
+  ChannelFacts facts;
   Size size;
   double times = 1;  ///< pixels of the cloth over those of the piece
 };
@@ -41,7 +37,7 @@ Piece piece_of(const MapPlanes& maps, const MapFolder& folder) {
   piece.facts = channel_facts(folder, piece.planes);
   piece.size = {std::min(kPiecePx, folder.size.width), std::min(kPiecePx, folder.size.height)};
   const int x = (folder.size.width - piece.size.width) / 2, y = (folder.size.height - piece.size.height) / 2;
-  for (exchange::SourcePlane& plane : piece.planes) {
+  for (SourcePlane& plane : piece.planes) {
     if (!plane.pixels.empty())
       plane.pixels = plane.pixels.crop({x, y, x + piece.size.width, y + piece.size.height});
   }
@@ -54,7 +50,7 @@ class Trials {
  public:
   explicit Trials(const Piece& piece) : piece_(piece) {}
 
-  Result<ExportPrice> price(const PresetFile& file, exchange::RoughnessConvention roughness) {
+  Result<ExportPrice> price(const PresetFile& file, RoughnessConvention roughness) {
     static const std::vector<std::string> kEndings = {".png", ".tif", ".exr", ".dds", ".tx"};
     const fs::path path =
         folder_.path() / ("trial" + kEndings[static_cast<std::size_t>(file.stored.encoding)]);
@@ -73,7 +69,7 @@ class Trials {
     price.bytes = piece_.times * static_cast<double>(fs::file_size(path, failed));
     Result<Image<float>> read = read_texture(path, input, 1);
     if (!read) return std::move(read).error();
-    price.loss = exchange::measure_loss(file, input.planes, input.facts, std::move(*read));
+    price.loss = measure_loss(file, input.planes, input.facts, std::move(*read));
     return price;
   }
 
@@ -144,11 +140,11 @@ std::vector<PresetFile> everything() {
 }
 
 // All planes that the presets and the comparison need.
-std::set<exchange::MapPlane> needed(const std::vector<FilledPreset>& presets) {
-  std::set<exchange::MapPlane> planes;
+std::set<MapPlane> needed(const std::vector<FilledPreset>& presets) {
+  std::set<MapPlane> planes;
   const auto add = [&](const PresetFile& file) {
     for (const std::string& name : file.channels) {
-      const auto& of = exchange::channel_named(name)->planes;
+      const auto& of = channel_named(name)->planes;
       planes.insert(of.begin(), of.end());
     }
   };
@@ -159,8 +155,7 @@ std::set<exchange::MapPlane> needed(const std::vector<FilledPreset>& presets) {
   return planes;
 }
 
-Result<void> choose_for(TextureToWrite& texture, const exchange::Preset& preset, double to_deg,
-                        Trials& trials) {
+Result<void> choose_for(TextureToWrite& texture, const Preset& preset, double to_deg, Trials& trials) {
   std::optional<ExportPrice> best, kept;
   for (const Stored& way : ways_of(texture.file)) {
     PresetFile file = texture.file;
@@ -187,7 +182,7 @@ Result<void> choose_bits(PreparedExport& prepared, const JobContext& context) {
   if (!prepared.options.to_deg) return {};
   const MapFolder& folder = prepared.folder;
   MapPlanes maps(folder, folder.size, context.threads);
-  if (Result<void> ok = maps.load({exchange::MapPlane::kNormalX}); !ok) return ok;
+  if (Result<void> ok = maps.load({MapPlane::kNormalX}); !ok) return ok;
   const Piece piece = piece_of(maps, folder);
   Trials trials(piece);
   for (FilledPreset& preset : prepared.presets) {
@@ -219,10 +214,10 @@ Result<std::vector<ExportPrice>> price_exports(const ExportOptions& asked, const
       Result<ExportPrice> price = trials.price(texture.file, preset.preset.roughness);
       if (!price) return std::move(price).error();
       if (levels_of(texture.file, folder.size) == 1) {
-        exchange::ChannelFacts facts = piece.facts;
+        ChannelFacts facts = piece.facts;
         facts.roughness = preset.preset.roughness;
-        price->loss.by_distance = exchange::loss_by_distance(texture.file, maps.planes(), facts, maps.lobe(),
-                                                             folder.size, context.threads);
+        price->loss.by_distance =
+            loss_by_distance(texture.file, maps.planes(), facts, maps.lobe(), folder.size, context.threads);
       }
       price->preset = preset.preset.name;
       price->file = texture.name;
@@ -234,7 +229,7 @@ Result<std::vector<ExportPrice>> price_exports(const ExportOptions& asked, const
   }
   for (const PresetFile& file : everything()) {
     if (context.stop.stop_requested()) return interrupted();
-    Result<ExportPrice> price = trials.price(file, exchange::RoughnessConvention::kRoot);
+    Result<ExportPrice> price = trials.price(file, RoughnessConvention::kRoot);
     if (!price) return std::move(price).error();
     price->file = file.name;
     prices.push_back(std::move(*price));
@@ -254,4 +249,4 @@ Json json_of(const std::vector<ExportPrice>& prices) {
   return rows;
 }
 
-}  // namespace weft::app
+}  // namespace weft::exchange

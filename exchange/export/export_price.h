@@ -11,15 +11,15 @@
 #include "exchange/export/prepare.h"
 #include "exchange/presets/loss.h"
 
-namespace weft::app {
+namespace weft::exchange {
 
 /// What one way to store some channels costs and loses on this cloth.
 struct ExportPrice {
   std::string preset;  ///< empty: no preset's, but to be compared with
   std::string file;    ///< of the preset, or "normals", "albedo"
-  exchange::Stored stored;
+  Stored stored;
   double bytes = 0, seconds = 0;  ///< of the whole cloth, by one thread, from those of the piece
-  exchange::Loss loss;
+  Loss loss;
   bool is_chosen = false;  ///< by what the normals may lose
 };
 
@@ -35,4 +35,4 @@ Json json_of(const std::vector<ExportPrice>& prices);
 /// the best that there is.
 Result<void> choose_bits(PreparedExport& prepared, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -3,7 +3,7 @@
 
 #include "core/describe/described_fields.h"
 
-namespace weft::app {
+namespace weft::exchange {
 
 void describe(Fields& fields, ExportRequest& r) {
   ExportOptions& e = r.options;
@@ -47,4 +47,4 @@ void describe(Fields& fields, ExportRequest& r) {
                e.to_deg);
 }
 
-}  // namespace weft::app
+}  // namespace weft::exchange

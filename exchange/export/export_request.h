@@ -8,7 +8,7 @@
 
 #include "core/describe/fields.h"
 
-namespace weft::app {
+namespace weft::exchange {
 
 struct ExportOptions {
   /// A session, a set of maps, a built material, a solve, or a material that is built first: a file that ends
@@ -36,4 +36,4 @@ struct ExportRequest {
 };
 void describe(Fields& fields, ExportRequest& request);
 
-}  // namespace weft::app
+}  // namespace weft::exchange

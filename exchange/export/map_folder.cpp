@@ -18,11 +18,10 @@
 #include "material/run/maps.h"
 #include "material/run/session_sets.h"
 
-namespace weft::app {
+namespace weft::exchange {
 namespace {
 
 namespace fs = std::filesystem;
-using exchange::MapPlane;
 
 constexpr const char* kUnusable = "the maps cannot be exported";
 
@@ -47,27 +46,28 @@ bool stays_inside(const std::string& file) {
 
 Result<fs::path> set_of_session(const MapFolderWish& wish) {
   if (!wish.maps_id.empty()) {
-    const Result<Product> found = find_product(kMapsProduct, wish.input / "maps", wish.maps_id);
+    const Result<Product> found = find_product(material::kMapsProduct, wish.input / "maps", wish.maps_id);
     if (!found) return found.error();
     return found->folder;
   }
   const Result<Session> session = read_session(wish.input);
   if (!session) return session.error();
-  const library::SessionSolves solves = library::solves_of(*session);
-  const std::vector<SessionSet> sets = sets_of(solves);
-  if (const SessionSet* set = set_to_use(solves, sets, wish.wanted)) return set->product.folder;
-  return Error{ErrorKind::kNoInput, fmt::format("there is no complete {}", kMapsProduct.noun),
+  const solve::SessionSolves solves = solve::solves_of(*session);
+  const std::vector<material::SessionSet> sets = material::sets_of(solves);
+  if (const material::SessionSet* set = material::set_to_use(solves, sets, wish.wanted))
+    return set->product.folder;
+  return Error{ErrorKind::kNoInput, fmt::format("there is no complete {}", material::kMapsProduct.noun),
                (wish.input / "maps").string(), "no folder there holds a maps.json that can be read",
                fmt::format("make it first with weft maps {}", wish.input.string())};
 }
 
-Result<MapFacts> map_from_json(const Json& entry, const std::string& where) {
+Result<material::MapFacts> map_from_json(const Json& entry, const std::string& where) {
   JsonFields fields(entry, where);
-  MapFacts map = {.name = fields.text("name"),
-                  .file = fields.text_or("file", ""),
-                  .source = map_source_named(fields.text_or("source", "")),
-                  .constant = fields.optional_number("constant"),
-                  .document = entry};
+  material::MapFacts map = {.name = fields.text("name"),
+                            .file = fields.text_or("file", ""),
+                            .source = material::map_source_named(fields.text_or("source", "")),
+                            .constant = fields.optional_number("constant"),
+                            .document = entry};
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
   if (map.file.empty() != map.constant.has_value())
     return unfit_folder(where, "a map has a file or is one number, and this one is not");
@@ -83,12 +83,13 @@ void add_surface(MapFolder& folder) {
   for (const char* name : {"normal", "albedo", "roughness", "specular"}) {
     const std::string file = fmt::format("{}.exr", name);
     if (folder.map(name) == nullptr && is_there(folder.folder / file))
-      folder.maps.push_back({.name = name, .file = file, .source = MapSource::kMeasured});
+      folder.maps.push_back({.name = name, .file = file, .source = material::MapSource::kMeasured});
   }
 }
 
 // Parameters of a built material that are no maps: a number or three, or {"value", "source"} of them.
-Result<void> add_parameters(const Json& parameters, const std::string& where, std::vector<MapFacts>& maps) {
+Result<void> add_parameters(const Json& parameters, const std::string& where,
+                            std::vector<material::MapFacts>& maps) {
   for (const auto& [name, written] : parameters.items()) {
     const bool is_object = written.is_object() && written.contains("value");
     const Json& value = is_object ? written["value"] : written;
@@ -99,9 +100,10 @@ Result<void> add_parameters(const Json& parameters, const std::string& where, st
     if (numbers.empty()) continue;
     if (!std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); }))
       return unfit_folder(where + ": " + name, "it is no finite number");
-    if (std::ranges::any_of(maps, [&name = name](const MapFacts& map) { return map.name == name; })) continue;
+    if (std::ranges::any_of(maps, [&name = name](const material::MapFacts& map) { return map.name == name; }))
+      continue;
     maps.push_back({.name = name,
-                    .source = map_source_named(is_object ? written.value("source", "") : ""),
+                    .source = material::map_source_named(is_object ? written.value("source", "") : ""),
                     .constant = numbers.front(),
                     .document = {{"numbers", numbers}}});
   }
@@ -119,12 +121,12 @@ void find_session(MapFolder& folder) {
 Result<void> find_source(MapFolder& folder, bool draft) {
   const Json& document = folder.document;
   const bool is_solve = folder.kind == "solve";
-  folder.level = text_at(document, is_solve ? "method" : "level");
-  folder.is_draft = is_solve ? folder.level == library::kLevels.front() : flag_at(document, "draft");
+  folder.level = material::text_at(document, is_solve ? "method" : "level");
+  folder.is_draft = is_solve ? folder.level == solve::kLevels.front() : material::flag_at(document, "draft");
   if (folder.session && folder.kind != "material") {
-    const library::SessionSolves solves = library::solves_of(*folder.session);
-    const std::string id = is_solve ? folder.id : text_at(document, "solve");
-    const library::ChoosableSolve* const found = solves.find(id);
+    const solve::SessionSolves solves = solve::solves_of(*folder.session);
+    const std::string id = is_solve ? folder.id : material::text_at(document, "solve");
+    const solve::ChoosableSolve* const found = solves.find(id);
     folder.stale = why_stale(solves, id);
     if (found != nullptr) {
       folder.level = found->level;
@@ -133,7 +135,7 @@ Result<void> find_source(MapFolder& folder, bool draft) {
   }
   if (!folder.is_draft || draft) return {};
   std::string remedy = "build it of better maps: weft maps SESSION, then leave draft out of its file";
-  if (folder.session) remedy = how_to_make_better(library::solves_of(*folder.session));
+  if (folder.session) remedy = material::how_to_make_better(solve::solves_of(*folder.session));
   return Error{ErrorKind::kUsage, kUnusable, folder.folder.string(),
                "they are of a preview, which has half the size and no masks",
                remedy + "; --draft exports the draft"};
@@ -181,7 +183,7 @@ Result<MapFolder> read_folder(const fs::path& path, const FolderKind& kind) {
     const Json& maps = fields.list("maps");
     if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
     for (std::size_t i = 0; i < maps.size(); ++i) {
-      Result<MapFacts> map = map_from_json(maps[i], fmt::format("{}: maps {}", where, i + 1));
+      Result<material::MapFacts> map = map_from_json(maps[i], fmt::format("{}: maps {}", where, i + 1));
       if (!map) return std::move(map).error();
       folder.maps.push_back(std::move(*map));
     }
@@ -196,12 +198,12 @@ Result<MapFolder> read_folder(const fs::path& path, const FolderKind& kind) {
   folder.albedo_scale = scale_of(folder);
   folder.title = title_of(folder);
   folder.name = file_name_of(folder.title, "cloth");
-  if (!exchange::is_plain_text(folder.title)) folder.title = folder.name;
+  if (!is_plain_text(folder.title)) folder.title = folder.name;
   return folder;
 }
 
 // A number of the roughness map: alpha where it is said, else the square of the root.
-std::optional<double> alpha_constant(const MapFacts& map, const char* key) {
+std::optional<double> alpha_constant(const material::MapFacts& map, const char* key) {
   if (map.document.contains(key) && map.document[key].is_number()) return map.document[key].get<double>();
   if (map.document.contains("alpha") && map.document["alpha"].is_number())
     return map.document["alpha"].get<double>();
@@ -209,13 +211,13 @@ std::optional<double> alpha_constant(const MapFacts& map, const char* key) {
 }
 
 std::optional<double> number_of(const MapFolder& folder, const char* name) {
-  const MapFacts* map = folder.map(name);
+  const material::MapFacts* map = folder.map(name);
   return map == nullptr ? std::nullopt : map->constant;
 }
 
 // Two alphas whose smaller one is `alpha`, by the strength of KHR_materials_anisotropy. The highlight of a
 // built material is stretched along anisotropy_deg, so its larger alpha stands along.
-PlaneOrigin roughness_constant(const MapFolder& folder, const MapFacts& map, MapPlane plane) {
+PlaneOrigin roughness_constant(const MapFolder& folder, const material::MapFacts& map, MapPlane plane) {
   const std::optional<double> alpha = alpha_constant(map, "alpha");
   if (plane == MapPlane::kAlpha) return {.constant = alpha};
   const double strength = number_of(folder, "anisotropy").value_or(0);
@@ -227,8 +229,8 @@ PlaneOrigin roughness_constant(const MapFolder& folder, const MapFacts& map, Map
 
 }  // namespace
 
-const MapFacts* MapFolder::map(const std::string& wanted) const {
-  const auto found = std::ranges::find(maps, wanted, &MapFacts::name);
+const material::MapFacts* MapFolder::map(const std::string& wanted) const {
+  const auto found = std::ranges::find(maps, wanted, &material::MapFacts::name);
   return found == maps.end() ? nullptr : &*found;
 }
 
@@ -260,13 +262,14 @@ std::vector<std::string> source_of(const MapFolder& folder) {
   std::vector<std::string> lines;
   if (folder.kind == "material") {
     for (const Json& scan : folder.document.value("scans", Json::array())) {
-      for (const std::string& line : source_lines(source_in(scan)))
-        lines.push_back(fmt::format("{}: {}", text_at(scan, "session"), line));
+      for (const std::string& line : material::source_lines(material::source_in(scan)))
+        lines.push_back(fmt::format("{}: {}", material::text_at(scan, "session"), line));
     }
     return lines;
   }
-  return source_lines({folder.kind == "solve" ? folder.id : text_at(folder.document, "solve"), folder.level,
-                       folder.is_draft, folder.stale});
+  return material::source_lines(
+      {folder.kind == "solve" ? folder.id : material::text_at(folder.document, "solve"), folder.level,
+       folder.is_draft, folder.stale});
 }
 
 Result<Json> provenance_of(const MapFolder& folder) {
@@ -294,8 +297,8 @@ Result<Json> provenance_of(const MapFolder& folder) {
 }
 
 PlaneOrigin origin_of(const MapFolder& folder, MapPlane plane) {
-  const exchange::PlaneKind& kind = exchange::kind_of(plane);
-  const MapFacts* map = folder.map(kind.map);
+  const PlaneKind& kind = kind_of(plane);
+  const material::MapFacts* map = folder.map(kind.map);
   if (map == nullptr && std::string(kind.map) == "specular") map = folder.map("f0");
   if (map == nullptr && std::string(kind.map) == "height") map = folder.map("height_mm");
   if (map == nullptr) return {};
@@ -312,4 +315,4 @@ PlaneOrigin origin_of(const MapFolder& folder, MapPlane plane) {
   return {.file = map->file, .channels = std::move(channels)};
 }
 
-}  // namespace weft::app
+}  // namespace weft::exchange

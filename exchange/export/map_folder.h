@@ -13,7 +13,7 @@
 #include "exchange/presets/channels.h"
 #include "material/run/map_facts.h"
 
-namespace weft::app {
+namespace weft::exchange {
 
 /// A folder of maps of one cloth: a set of maps (maps.json), a built material (material.json), or a solve
 /// (solve.json) as it was photographed.
@@ -26,9 +26,10 @@ struct MapFolder {
   Size size;
   std::optional<double> mm_per_pixel;  ///< none: photographs do not tell
   bool is_tile = false;
-  std::string albedo_scale;    ///< "absolute", "relative" or, where nobody says, "unknown"
-  std::vector<MapFacts> maps;  ///< `document`: its entry; a parameter of several numbers has them there
-  std::string document_file;   ///< "maps.json"
+  std::string albedo_scale;  ///< "absolute", "relative" or, where nobody says, "unknown"
+  std::vector<material::MapFacts>
+      maps;                   ///< `document`: its entry; a parameter of several numbers has them there
+  std::string document_file;  ///< "maps.json"
   Json document;
   std::optional<Session> session;  ///< that it lies in
   /// The solve's level, whether it is a preview, and why it is stale today, a sentence each.
@@ -36,7 +37,7 @@ struct MapFolder {
   bool is_draft = false;
   std::vector<std::string> stale = {};
 
-  const MapFacts* map(const std::string& name) const;
+  const material::MapFacts* map(const std::string& name) const;
 };
 
 /// What is opened, and what it is for.
@@ -65,6 +66,6 @@ struct PlaneOrigin {
   std::vector<std::string> channels = {};  ///< the first of these that the file has
   std::optional<double> constant = {};
 };
-PlaneOrigin origin_of(const MapFolder& folder, exchange::MapPlane plane);
+PlaneOrigin origin_of(const MapFolder& folder, MapPlane plane);
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -16,12 +16,10 @@
 #include "exchange/presets/reduce.h"
 #include "material/filtering/roughness_mips.h"
 
-namespace weft::app {
+namespace weft::exchange {
 namespace {
 
 namespace fs = std::filesystem;
-using exchange::MapPlane;
-using exchange::SourcePlanes;
 
 std::size_t index_of(MapPlane plane) {
   return static_cast<std::size_t>(plane);
@@ -35,19 +33,19 @@ Error unfit_map(const fs::path& file, std::string why) {
 constexpr std::array kLobePlanes = {MapPlane::kAlpha, MapPlane::kAlphaAlong, MapPlane::kYarnDeg};
 
 // How a plane is averaged: what is asked for the same is reduced together.
-exchange::Averaging averaging_of(MapPlane plane) {
+Averaging averaging_of(MapPlane plane) {
   switch (plane) {
     case MapPlane::kNormalX:
     case MapPlane::kNormalY:
     case MapPlane::kNormalZ:
-      return exchange::Averaging::kSlopes;
+      return Averaging::kSlopes;
     case MapPlane::kAlpha:
     case MapPlane::kAlphaAlong:
-      return exchange::Averaging::kSquares;
+      return Averaging::kSquares;
     case MapPlane::kYarnDeg:
-      return exchange::Averaging::kNearest;
+      return Averaging::kNearest;
     default:
-      return exchange::Averaging::kMean;
+      return Averaging::kMean;
   }
 }
 
@@ -95,8 +93,7 @@ Result<void> fill(const MapFolder& folder, const std::vector<MapPlane>& planes, 
     const PlaneOrigin origin = origin_of(folder, planes[p]);
     const View<const float> from = channel_of(*image, origin.channels);
     if (!file.empty() && from.empty())
-      return unfit_map(folder.folder / file,
-                       fmt::format("it has no channel {}", exchange::kind_of(planes[p]).channel));
+      return unfit_map(folder.folder / file, fmt::format("it has no channel {}", kind_of(planes[p]).channel));
     const View<float> plane = to.plane(static_cast<int>(p));
     if (!from.empty()) {
       copy_plane(from, plane);
@@ -139,16 +136,20 @@ Result<material::Surface> surface_of(const MapFolder& folder, int threads) {
   material::Surface surface;
   surface.is_tile = folder.is_tile;
   Image<float> normal(folder.size, 3);
-  if (Result<void> ok = fill(folder, {MapPlane::kNormalX, MapPlane::kNormalY, MapPlane::kNormalZ}, normal); !ok)
+  if (Result<void> ok = fill(folder, {MapPlane::kNormalX, MapPlane::kNormalY, MapPlane::kNormalZ}, normal);
+      !ok)
     return std::move(ok).error();
   surface.slope = slopes_of(normal, threads);
   normal = {};
   surface.lobe = Image<float>(folder.size, 3);
-  if (Result<void> ok = fill(folder, {MapPlane::kAlpha, MapPlane::kAlphaAlong, MapPlane::kYarnDeg}, surface.lobe); !ok)
+  if (Result<void> ok =
+          fill(folder, {MapPlane::kAlpha, MapPlane::kAlphaAlong, MapPlane::kYarnDeg}, surface.lobe);
+      !ok)
     return std::move(ok).error();
   if (!origin_of(folder, MapPlane::kOpacity).file.empty()) {
     surface.opacity = Image<float>(folder.size);
-    if (Result<void> ok = fill(folder, {MapPlane::kOpacity}, surface.opacity); !ok) return std::move(ok).error();
+    if (Result<void> ok = fill(folder, {MapPlane::kOpacity}, surface.opacity); !ok)
+      return std::move(ok).error();
   }
   Result<Image<std::uint16_t>> status = status_of(folder);
   if (!status) return std::move(status).error();
@@ -159,7 +160,8 @@ Result<material::Surface> surface_of(const MapFolder& folder, int threads) {
 // `size` is at most the folder's. Nothing where there are no normals, or no roughness that can be wider.
 Result<LobeOnGrid> lobe_on_grid(const MapFolder& folder, Size size, int threads) {
   LobeOnGrid lobe;
-  const PlaneOrigin alpha = origin_of(folder, MapPlane::kAlpha), along = origin_of(folder, MapPlane::kAlphaAlong);
+  const PlaneOrigin alpha = origin_of(folder, MapPlane::kAlpha),
+                    along = origin_of(folder, MapPlane::kAlphaAlong);
   const bool has_lobe = !alpha.file.empty() || alpha.constant.has_value();
   const bool can_widen = alpha.constant.value_or(0) < 1 || along.constant.value_or(0) < 1;
   if (!has_lobe || !can_widen || origin_of(folder, MapPlane::kNormalX).file.empty()) return lobe;
@@ -211,14 +213,14 @@ Result<void> MapPlanes::read(const std::string& file, const std::vector<MapPlane
     const View<float> plane = kept.plane(static_cast<int>(i));
     if (size_ == folder_.size) {
       copy_plane(channel, plane);
-    } else if (averaging_of(planes[i]) != exchange::Averaging::kSlopes) {
-      exchange::reduce(channel, averaging_of(planes[i]), threads_, plane);
+    } else if (averaging_of(planes[i]) != Averaging::kSlopes) {
+      reduce(channel, averaging_of(planes[i]), threads_, plane);
     }
     planes_[index_of(planes[i])] = {.pixels = plane};
   }
   if (size_ != folder_.size && planes.front() == MapPlane::kNormalX) {
-    exchange::reduce_normals({image->channel("X"), image->channel("Y"), image->channel("Z")}, threads_,
-                             {kept.plane(0), kept.plane(1), kept.plane(2)});
+    reduce_normals({image->channel("X"), image->channel("Y"), image->channel("Z")}, threads_,
+                   {kept.plane(0), kept.plane(1), kept.plane(2)});
   }
   loaded_.emplace(file, std::move(kept));
   return {};
@@ -266,20 +268,20 @@ Result<void> MapPlanes::load(const std::set<MapPlane>& wanted) {
   return asks_for_lobe ? find_lobe() : Result<void>();
 }
 
-exchange::ChannelFacts channel_facts(const MapFolder& folder, const SourcePlanes& planes) {
-  exchange::ChannelFacts facts;
-  if (const MapFacts* height = folder.map("height"); height != nullptr) {
+ChannelFacts channel_facts(const MapFolder& folder, const SourcePlanes& planes) {
+  ChannelFacts facts;
+  if (const material::MapFacts* height = folder.map("height"); height != nullptr) {
     facts.height_least_mm = height->constant.value_or(height->least);
     facts.height_most_mm = height->constant.value_or(height->most);
   }
   const auto pixels = [&](MapPlane plane) { return planes[index_of(plane)].pixels; };
   if (!pixels(MapPlane::kAlbedoR).empty())
     facts.mean_luminance =
-        exchange::mean_luminance({pixels(MapPlane::kAlbedoR), pixels(MapPlane::kAlbedoG), pixels(MapPlane::kAlbedoB)});
+        mean_luminance({pixels(MapPlane::kAlbedoR), pixels(MapPlane::kAlbedoG), pixels(MapPlane::kAlbedoB)});
   if (!pixels(MapPlane::kNormalX).empty())
     facts.mean_slope =
-        exchange::mean_slope({pixels(MapPlane::kNormalX), pixels(MapPlane::kNormalY), pixels(MapPlane::kNormalZ)});
+        mean_slope({pixels(MapPlane::kNormalX), pixels(MapPlane::kNormalY), pixels(MapPlane::kNormalZ)});
   return facts;
 }
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -12,7 +12,7 @@
 #include "exchange/presets/channels.h"
 #include "exchange/presets/mips.h"
 
-namespace weft::app {
+namespace weft::exchange {
 
 /// The lobe of a cloth on a grid and on coarser ones: planes alpha, alpha_along, yarn_deg. Alphas are widened
 /// by the spread of the normals of all pixels beneath a texel, by the rule of the set's own mips
@@ -32,34 +32,34 @@ class MapPlanes {
 
   /// Reads what `wanted` needs and lets go of the files that it does not need. kBadData with the file: it is
   /// of another size, lacks a channel, or holds a value that is no finite number.
-  Result<void> load(const std::set<exchange::MapPlane>& wanted);
+  Result<void> load(const std::set<MapPlane>& wanted);
 
   /// What is loaded; of files that are not, an empty plane with a number, so that it counts as there.
-  const exchange::SourcePlanes& planes() const { return planes_; }
+  const SourcePlanes& planes() const { return planes_; }
 
   /// The lobe on ever coarser grids, once a plane of it was asked for; empty where there are no normals or no
   /// roughness, or one that is 1 everywhere.
-  exchange::LobeLevels lobe() const { return lobe_.coarser; }
+  LobeLevels lobe() const { return lobe_.coarser; }
 
   /// The planes as check_file() and says_something() need them: those of files have a pixel without a
   /// meaning.
-  static exchange::SourcePlanes outline_of(const MapFolder& folder);
+  static SourcePlanes outline_of(const MapFolder& folder);
 
  private:
-  Result<void> read(const std::string& file, const std::vector<exchange::MapPlane>& planes);
+  Result<void> read(const std::string& file, const std::vector<MapPlane>& planes);
   Result<void> find_lobe();
 
   const MapFolder& folder_;
   Size size_;
   int threads_;
   std::map<std::string, Image<float>> loaded_;  ///< by file, planes in the order of exchange::MapPlane
-  exchange::SourcePlanes planes_;
+  SourcePlanes planes_;
   LobeOnGrid lobe_;
   bool has_lobe_ = false;
 };
 
 /// What channels need to know of the cloth beside its pixels, of planes that are loaded: the range of heights
 /// by the document, the mean luminance and the mean slopes where albedo and normals are loaded.
-exchange::ChannelFacts channel_facts(const MapFolder& folder, const exchange::SourcePlanes& planes);
+ChannelFacts channel_facts(const MapFolder& folder, const SourcePlanes& planes);
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -22,12 +22,10 @@
 #include "material/assets/material_place.h"
 #include "material/run/derived_maps.h"
 
-namespace weft::app {
+namespace weft::exchange {
 namespace {
 
 namespace fs = std::filesystem;
-using exchange::DocumentKind;
-using exchange::Preset;
 
 constexpr int kVersion = 3;  // raised whenever the bytes of an export may change
 
@@ -64,7 +62,7 @@ Result<std::string> name_of(const ExportOptions& options, const MapFolder& folde
   if (name.find('/') != std::string::npos)
     return unfit_export(where, fmt::format("\"{}\" has a /, which no file name can", name),
                         "name it without, by --name");
-  if (const Result<void> portable = exchange::check_portable_path(name); !portable)
+  if (const Result<void> portable = check_portable_path(name); !portable)
     return unfit_export(where, fmt::format("\"{}\": {}", name, portable.error().why),
                         "give another by --name");
   return name;
@@ -73,9 +71,9 @@ Result<std::string> name_of(const ExportOptions& options, const MapFolder& folde
 // A file's name with the cloth's in it, which must still be one, and that of no other file.
 Result<std::string> file_name(const std::string& pattern, const Preset& preset, const std::string& name,
                               std::set<std::string>& taken) {
-  std::string file = exchange::named(pattern, name);
+  std::string file = named(pattern, name);
   const std::string where = fmt::format("preset {}: {}", preset.name, pattern);
-  if (const Result<void> portable = exchange::check_portable_path(file); !portable)
+  if (const Result<void> portable = check_portable_path(file); !portable)
     return unfit_export(where, fmt::format("\"{}\": {}", file, portable.error().why), "give another --name");
   std::string folded = file;
   std::ranges::transform(folded, folded.begin(),
@@ -87,11 +85,11 @@ Result<std::string> file_name(const std::string& pattern, const Preset& preset, 
 }
 
 Result<void> add_textures(const MapFolder& folder, FilledPreset& filled, std::set<std::string>& taken) {
-  const exchange::SourcePlanes outline = MapPlanes::outline_of(folder);
-  for (const exchange::PresetFile& file : filled.preset.files) {
-    const Result<void> complete = exchange::check_file(file, outline, filled.preset.name);
+  const SourcePlanes outline = MapPlanes::outline_of(folder);
+  for (const PresetFile& file : filled.preset.files) {
+    const Result<void> complete = check_file(file, outline, filled.preset.name);
     if (!complete && !file.is_optional) return complete;
-    if (file.is_optional && (!complete || !exchange::says_something(file, outline))) continue;
+    if (file.is_optional && (!complete || !says_something(file, outline))) continue;
     Result<std::string> name = file_name(file.name, filled.preset, filled.name, taken);
     if (!name) return std::move(name).error();
     filled.textures.push_back({file, std::move(*name)});
@@ -102,7 +100,7 @@ Result<void> add_textures(const MapFolder& folder, FilledPreset& filled, std::se
 }
 
 Result<void> add_documents(const MapFolder& folder, FilledPreset& filled, std::set<std::string>& taken) {
-  for (const exchange::PresetDocument& document : filled.preset.documents) {
+  for (const PresetDocument& document : filled.preset.documents) {
     const bool is_u3m = document.kind == DocumentKind::kU3m || document.kind == DocumentKind::kU3ma;
     const bool lacks = (is_u3m && !folder.mm_per_pixel) ||
                        (document.kind == DocumentKind::kLayers && !folder.document.contains("runtime"));
@@ -135,8 +133,7 @@ Result<Json> digests_of(const MapFolder& folder, const FilledPreset& filled) {
   std::set<std::string> files;
   for (const TextureToWrite& texture : filled.textures) {
     for (const std::string& name : texture.file.channels) {
-      for (const exchange::MapPlane plane : exchange::channel_named(name)->planes)
-        files.insert(origin_of(folder, plane).file);
+      for (const MapPlane plane : channel_named(name)->planes) files.insert(origin_of(folder, plane).file);
     }
   }
   files.erase("");
@@ -149,13 +146,13 @@ Result<Json> digests_of(const MapFolder& folder, const FilledPreset& filled) {
   return digests;
 }
 
-Json json_of(const exchange::PresetFile& file) {
+Json json_of(const PresetFile& file) {
   return {{"name", file.name},
           {"channels", file.channels},
           {"stored", words_of(file.stored)},
-          {"color", exchange::kColorSpaceNames[static_cast<std::size_t>(file.stored.color)]},
+          {"color", kColorSpaceNames[static_cast<std::size_t>(file.stored.color)]},
           {"prman", file.stored.is_prman},
-          {"direction", exchange::kNormalDirectionNames[static_cast<std::size_t>(file.direction)]}};
+          {"direction", kNormalDirectionNames[static_cast<std::size_t>(file.direction)]}};
 }
 
 Result<Json> inputs_of(const ExportOptions& options, const MapFolder& folder, const FilledPreset& filled) {
@@ -166,20 +163,19 @@ Result<Json> inputs_of(const ExportOptions& options, const MapFolder& folder, co
   Json files = Json::array();
   for (const TextureToWrite& texture : filled.textures) files.push_back(json_of(texture.file));
   Json documents = Json::array();
-  for (const exchange::PresetDocument& each : filled.documents) documents.push_back(each.name);
-  return Json{
-      {"version", kVersion},
-      {"preset", filled.preset.name},
-      {"roughness", exchange::kRoughnessConventionNames[static_cast<std::size_t>(filled.preset.roughness)]},
-      {"files", std::move(files)},
-      {"documents", std::move(documents)},
-      {"of", *document},
-      {"maps", std::move(*digests)},
-      {"name", filled.name},
-      {"title", filled.title},
-      {"width", filled.size.width},
-      {"height", filled.size.height},
-      {"dx10", options.is_dx10}};
+  for (const PresetDocument& each : filled.documents) documents.push_back(each.name);
+  return Json{{"version", kVersion},
+              {"preset", filled.preset.name},
+              {"roughness", kRoughnessConventionNames[static_cast<std::size_t>(filled.preset.roughness)]},
+              {"files", std::move(files)},
+              {"documents", std::move(documents)},
+              {"of", *document},
+              {"maps", std::move(*digests)},
+              {"name", filled.name},
+              {"title", filled.title},
+              {"width", filled.size.width},
+              {"height", filled.size.height},
+              {"dx10", options.is_dx10}};
 }
 
 fs::path folder_of(const ExportOptions& options, const MapFolder& folder, const std::string& preset) {
@@ -232,16 +228,16 @@ Result<std::vector<FilledPreset>> fill_presets(const ExportOptions& options, con
 // it is made of, as that is today.
 Result<ExportOptions> with_built_material(ExportOptions options, Json& scans, const JobContext& context) {
   const std::string written = options.input.string();
-  const bool is_library = written.starts_with(kLibraryPrefix);
+  const bool is_library = written.starts_with(material::kLibraryPrefix);
   if (!is_library && (!written.ends_with(".toml") || !is_there(options.input))) return options;
-  const Result<MaterialPlace> place = find_material(written, fs::current_path());
+  const Result<material::MaterialPlace> place = material::find_material(written, fs::current_path());
   if (!place) return place.error();
   const fs::path base =
       is_library ? fs::absolute(plain_name(written)) : fs::absolute(options.input).replace_extension();
-  BuildOptions build;
+  material::BuildOptions build;
   build.materials = {*place};
   if (place->is_shipped()) build.output = base.string() + "-build";
-  const Result<BuildReport> built = build_materials(build, context);
+  const Result<material::BuildReport> built = material::build_materials(build, context);
   if (!built) return built.error();
   options.input = built->materials.front().folder;
   scans = built->materials.front().document["scans"];
@@ -253,30 +249,30 @@ Result<ExportOptions> with_built_material(ExportOptions options, Json& scans, co
 std::vector<std::string> needed_maps(const ExportOptions& options) {
   std::set<std::string> needed;
   for (const std::string& name : options.presets) {
-    const Result<exchange::Preset> preset = read_preset(name);
+    const Result<Preset> preset = read_preset(name);
     if (!preset) continue;  // fill_preset() says why
-    for (const exchange::PresetFile& file : preset->files) {
+    for (const PresetFile& file : preset->files) {
       for (const std::string& channel : file.channels) {
-        const exchange::Channel* const known = exchange::channel_named(channel);
+        const Channel* const known = channel_named(channel);
         if (known == nullptr || file.is_optional) continue;
-        for (const exchange::MapPlane plane : known->planes) needed.insert(exchange::kind_of(plane).map);
+        for (const MapPlane plane : known->planes) needed.insert(kind_of(plane).map);
       }
     }
   }
   std::vector<std::string> derived;
-  for (const DerivedMap& map : derived_maps()) {
+  for (const material::DerivedMap& map : material::derived_maps()) {
     if (needed.contains(map.name) && std::string_view(map.name) != "opacity") derived.emplace_back(map.name);
   }
   return derived;
 }
 
 // The preset's textures of one layer, below a folder of its name.
-Result<FilledPreset> fill_layer(const FilledPreset& filled, const RuntimeLayer& layer,
+Result<FilledPreset> fill_layer(const FilledPreset& filled, const material::RuntimeLayer& layer,
                                 const MapFolder& maps) {
-  exchange::Preset preset = filled.preset;
+  Preset preset = filled.preset;
   preset.documents.clear();
   const std::string name = file_name_of(layer.name, "layer");
-  for (exchange::PresetFile& file : preset.files)
+  for (PresetFile& file : preset.files)
     file.name = fmt::format("layers/{}/{}", name, fs::path(file.name).filename().string());
   ExportOptions options = {.input = layer.folder, .name = name};
   options.presets = {preset.name};
@@ -322,14 +318,14 @@ std::uint64_t most_bytes(const FilledPreset& preset) {
 
 Result<LayersToWrite> layers_of(const FilledPreset& preset, const MapFolder& maps) {
   LayersToWrite found;
-  if (std::ranges::find(preset.documents, DocumentKind::kLayers, &exchange::PresetDocument::kind) ==
+  if (std::ranges::find(preset.documents, DocumentKind::kLayers, &PresetDocument::kind) ==
       preset.documents.end())
     return found;
-  Result<RuntimeStack> stack = runtime_stack_of(maps.folder);
+  Result<material::RuntimeStack> stack = material::runtime_stack_of(maps.folder);
   if (!stack) return std::move(stack).error();
   found.stack = std::move(*stack);
   for (std::size_t i = 1; i < found.stack.layers.size(); ++i) {
-    const RuntimeLayer& layer = found.stack.layers[i];
+    const material::RuntimeLayer& layer = found.stack.layers[i];
     Result<MapFolder> own = open_map_folder({.input = layer.folder, .is_draft = true});
     if (!own) return std::move(own).error();
     Result<FilledPreset> filled = fill_layer(preset, layer, *own);
@@ -339,4 +335,4 @@ Result<LayersToWrite> layers_of(const FilledPreset& preset, const MapFolder& map
   return found;
 }
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -18,24 +18,24 @@
 
 // What is known of an export before its first file is made.
 
-namespace weft::app {
+namespace weft::exchange {
 
 /// A texture that is to be written.
 struct TextureToWrite {
-  exchange::PresetFile file;
+  PresetFile file;
   std::string name;  ///< relative to the folder of the export
 };
 
 /// A preset filled in for one cloth: all that is to be written.
 struct FilledPreset {
-  exchange::Preset preset;
+  Preset preset;
   std::string title;  ///< of the cloth, for people
   std::string name;   ///< of the cloth in file names
   Size size;
   PixelPitch pitch_mm = {};  ///< 0: not known
   std::vector<TextureToWrite> textures;
-  std::vector<exchange::PresetDocument> documents;  ///< with the cloth's name in theirs
-  std::vector<std::string> notes;                   ///< sentences that people should read
+  std::vector<PresetDocument> documents;  ///< with the cloth's name in theirs
+  std::vector<std::string> notes;         ///< sentences that people should read
   std::filesystem::path folder;
   Json inputs = {};     ///< all that the bytes depend on, once identify() was asked
   std::string id = {};  ///< its hash
@@ -63,7 +63,7 @@ struct LayerToWrite {
   FilledPreset preset;  ///< of the material, with the textures in layers/NAME/
 };
 struct LayersToWrite {
-  RuntimeStack stack;
+  material::RuntimeStack stack;
   std::vector<LayerToWrite> layers;  ///< all of the stack but the lowest, which is the material itself
 };
 
@@ -71,4 +71,4 @@ struct LayersToWrite {
 /// Errors of runtime_stack_of(), open_map_folder() and prepare_export().
 Result<LayersToWrite> layers_of(const FilledPreset& preset, const MapFolder& maps);
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -12,7 +12,7 @@
 #include "core/base/files.h"
 #include "core/base/text.h"
 
-namespace weft::app {
+namespace weft::exchange {
 namespace {
 
 namespace fs = std::filesystem;
@@ -43,8 +43,7 @@ fs::path user_preset_folder() {
 
 std::vector<KnownPreset> known_presets() {
   std::map<std::string, KnownPreset> by_name;
-  for (const exchange::ShippedPreset& shipped : exchange::shipped_presets())
-    by_name[shipped.name] = {.name = shipped.name};
+  for (const ShippedPreset& shipped : shipped_presets()) by_name[shipped.name] = {.name = shipped.name};
   std::error_code failed;
   for (const fs::directory_entry& entry : fs::directory_iterator(user_preset_folder(), failed)) {
     const std::string name = entry.path().stem().string();
@@ -60,20 +59,20 @@ Result<std::string> preset_text(const std::string& name_or_file) {
   const Result<KnownPreset> preset = find_preset(name_or_file);
   if (!preset) return preset.error();
   if (!preset->file.empty()) return read_text(preset->file);
-  for (const exchange::ShippedPreset& shipped : exchange::shipped_presets()) {
+  for (const ShippedPreset& shipped : shipped_presets()) {
     if (shipped.name == preset->name) return std::string(shipped.toml);
   }
   return std::string();
 }
 
-Result<exchange::Preset> read_preset(const std::string& name_or_file) {
+Result<Preset> read_preset(const std::string& name_or_file) {
   const Result<std::string> text = preset_text(name_or_file);
   if (!text) return text.error();
-  if (is_file_name(name_or_file)) return exchange::preset_from_toml(*text, name_or_file);
+  if (is_file_name(name_or_file)) return preset_from_toml(*text, name_or_file);
   const Result<KnownPreset> preset = find_preset(name_or_file);
   if (!preset) return preset.error();
   const std::string where = preset->file.empty() ? "preset " + preset->name : preset->file.string();
-  Result<exchange::Preset> read = exchange::preset_from_toml(*text, where);
+  Result<Preset> read = preset_from_toml(*text, where);
   if (read && read->name != preset->name) {
     return Error{ErrorKind::kBadData, "the description cannot be used", where + ": name",
                  fmt::format("it says {}, its file {}", read->name, preset->name), "give both one name"};
@@ -81,4 +80,4 @@ Result<exchange::Preset> read_preset(const std::string& name_or_file) {
   return read;
 }
 
-}  // namespace weft::app
+}  // namespace weft::exchange

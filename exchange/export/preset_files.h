@@ -8,7 +8,7 @@
 #include "core/base/result.h"
 #include "exchange/presets/preset.h"
 
-namespace weft::app {
+namespace weft::exchange {
 
 /// Where a preset comes from.
 struct KnownPreset {
@@ -27,6 +27,6 @@ std::vector<KnownPreset> known_presets();
 /// nearest name.
 Result<std::string> preset_text(const std::string& name_or_file);
 /// And the preset itself. Errors of preset_from_toml().
-Result<exchange::Preset> read_preset(const std::string& name_or_file);
+Result<Preset> read_preset(const std::string& name_or_file);
 
-}  // namespace weft::app
+}  // namespace weft::exchange

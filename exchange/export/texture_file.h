@@ -10,14 +10,14 @@
 #include "exchange/presets/mips.h"
 #include "exchange/presets/pack.h"
 
-namespace weft::app {
+namespace weft::exchange {
 
 /// What a texture is made of: a file of a preset, and the maps of a cloth.
 struct TextureInput {
-  const exchange::PresetFile& file;
-  const exchange::SourcePlanes& planes;
-  exchange::ChannelFacts facts;
-  exchange::LobeLevels lobe = {};  ///< of the cloth at this size; empty: levels are means
+  const PresetFile& file;
+  const SourcePlanes& planes;
+  ChannelFacts facts;
+  LobeLevels lobe = {};  ///< of the cloth at this size; empty: levels are means
   Size size;
   PixelPitch pitch_mm = {};
   bool is_tile = false;
@@ -30,10 +30,10 @@ struct TextureInput {
 Result<void> write_texture(const std::filesystem::path& path, const TextureInput& input, int threads);
 
 /// Mips that `path` has: 1 but for dds and tx.
-int levels_of(const exchange::PresetFile& file, Size size);
+int levels_of(const PresetFile& file, Size size);
 
 /// Samples of a texture's largest level as any reader has them, 0 to 1 or, of floats, as they are: a plane a
 /// channel. kBadData where the file is not what write_texture() makes.
 Result<Image<float>> read_texture(const std::filesystem::path& path, const TextureInput& input, int threads);
 
-}  // namespace weft::app
+}  // namespace weft::exchange

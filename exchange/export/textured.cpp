@@ -11,24 +11,20 @@
 
 #include "exchange/export/map_planes.h"
 
-namespace weft::app {
+namespace weft::exchange {
 namespace {
-
-using exchange::TexturedParameter;
-using exchange::Texture;
-using exchange::TexturedMaterial;
 
 // A texture, how it is stored, and where in it the channels begin.
 struct FoundChannels {
   const ExportedTexture& texture;
-  const exchange::Stored& stored;
+  const Stored& stored;
   std::size_t first = 0;
 };
 
 std::optional<FoundChannels> find_channels(const ClothTextures& cloth,
                                            const std::vector<std::string>& channels) {
   for (std::size_t i = 0; i < cloth.textures.size(); ++i) {
-    const exchange::PresetFile& file = cloth.preset.textures[i].file;
+    const PresetFile& file = cloth.preset.textures[i].file;
     const std::vector<std::string>& all = file.channels;
     const auto found = std::search(all.begin(), all.end(), channels.begin(), channels.end());
     if (found == all.end()) continue;
@@ -38,35 +34,36 @@ std::optional<FoundChannels> find_channels(const ClothTextures& cloth,
 }
 
 // The source of the map that the first channel comes from.
-std::string source_in(const MapFolder& maps, const exchange::Channel& channel) {
-  for (const exchange::MapPlane plane : channel.planes) {
-    if (const MapFacts* map = maps.map(exchange::kind_of(plane).map)) return name_of(map->source);
+std::string source_in(const MapFolder& maps, const Channel& channel) {
+  for (const MapPlane plane : channel.planes) {
+    if (const material::MapFacts* map = maps.map(kind_of(plane).map)) return name_of(map->source);
   }
   return "assumed";
 }
 
-Texture texture_of(const FoundChannels& found, std::size_t count, const exchange::Channel& channel) {
+Texture texture_of(const FoundChannels& found, std::size_t count, const Channel& channel) {
   constexpr std::string_view kLetters = "rgba";
   Texture texture = {.file = found.texture.file, .size = found.texture.size, .bits = found.stored.bits};
   texture.channels = kLetters.substr(found.first, count);
-  texture.is_srgb = found.stored.color == ColorSpace::kSrgb && channel.kind == exchange::ChannelKind::kColor;
+  texture.is_srgb = found.stored.color == ColorSpace::kSrgb && channel.kind == ChannelKind::kColor;
   // Directions are n / 2 + 1/2 by the noun itself.
-  if (channel.kind == exchange::ChannelKind::kNormal || found.stored.is_float()) return texture;
+  if (channel.kind == ChannelKind::kNormal || found.stored.is_float()) return texture;
   const ExportedChannel& written = found.texture.channels[found.first];
   texture.scale = *written.at_1 - *written.at_0;
   texture.offset = *written.at_0;
   return texture;
 }
 
-std::optional<TexturedParameter> parameter_of(const ClothTextures& cloth, const std::vector<std::string>& channels) {
+std::optional<TexturedParameter> parameter_of(const ClothTextures& cloth,
+                                              const std::vector<std::string>& channels) {
   const std::optional<FoundChannels> found = find_channels(cloth, channels);
   if (!found) return std::nullopt;
-  const exchange::Channel& first = *exchange::channel_named(channels.front());
+  const Channel& first = *channel_named(channels.front());
   TexturedParameter parameter = {.texture = texture_of(*found, channels.size(), first),
-                         .source = source_in(cloth.maps, first)};
-  const exchange::ChannelFacts facts = channel_facts(cloth.maps, {});
+                                 .source = source_in(cloth.maps, first)};
+  const ChannelFacts facts = channel_facts(cloth.maps, {});
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    const exchange::ChannelRange range = exchange::range_of(*exchange::channel_named(channels[i]), facts);
+    const ChannelRange range = range_of(*channel_named(channels[i]), facts);
     const double mean = found->texture.channels[found->first + i].mean;
     parameter.constant[i] = std::clamp(mean, range.least, range.most);
   }
@@ -154,7 +151,8 @@ std::vector<std::pair<std::string, std::string>> provenance_words(const MapFolde
       words.emplace_back("calibration", maps.session->calibration_id);
   }
   words.emplace_back("albedo_scale", maps.albedo_scale);
-  for (const MapFacts& map : maps.maps) words.emplace_back("source." + map.name, name_of(map.source));
+  for (const material::MapFacts& map : maps.maps)
+    words.emplace_back("source." + map.name, name_of(map.source));
   return words;
 }
 
@@ -188,7 +186,7 @@ TexturedMaterial textured_material(const ClothTextures& cloth) {
   material.roughness = of({"roughness.least"});
   if (!material.roughness) material.roughness = of({"roughness"});
   material.occlusion = of({"occlusion"});
-  if (const MapFacts* opacity = maps.map("opacity")) {
+  if (const material::MapFacts* opacity = maps.map("opacity")) {
     if (!(opacity->constant && *opacity->constant == 1)) material.opacity = of({"opacity"});
   }
   material.f0 = reflectance_of(cloth);
@@ -198,11 +196,10 @@ TexturedMaterial textured_material(const ClothTextures& cloth) {
   material.sheen_color = of({"sheen.r", "sheen.g", "sheen.b"});
   material.sheen_roughness = of({"sheen_roughness"});
   material.provenance = provenance_words(maps);
-  const bool has_glb = std::ranges::any_of(preset.documents, [](const exchange::PresetDocument& document) {
-    return document.kind == exchange::DocumentKind::kGlb;
-  });
+  const bool has_glb = std::ranges::any_of(
+      preset.documents, [](const PresetDocument& document) { return document.kind == DocumentKind::kGlb; });
   Constants(material, textures).take(has_glb);
   return material;
 }
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -98,7 +98,7 @@ std::vector<Channel> all_channels() {
   using enum ChannelKind;
   using enum MapPlane;
   const std::vector<MapPlane> rgb = {kAlbedoR, kAlbedoG, kAlbedoB}, xyz = {kNormalX, kNormalY, kNormalZ},
-                           alphas = {kAlpha, kAlphaAlong}, lobe = {kAlpha, kAlphaAlong, kYarnDeg};
+                              alphas = {kAlpha, kAlphaAlong}, lobe = {kAlpha, kAlphaAlong, kYarnDeg};
   return {{"albedo.r", "diffuse reflectance, red", kColor, "", 0, 1, {kAlbedoR}, same},
           {"albedo.g", "green", kColor, "", 0, 1, {kAlbedoG}, same},
           {"albedo.b", "blue", kColor, "", 0, 1, {kAlbedoB}, same},

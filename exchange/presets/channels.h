@@ -121,9 +121,9 @@ struct Channel {
   const char* name;
   const char* says;
   ChannelKind kind;
-  const char* unit;            ///< empty: none
-  double least = 0, most = 1;  ///< of the value; of `height` those of the facts
-  std::vector<MapPlane> planes;   ///< what it is computed from
+  const char* unit;              ///< empty: none
+  double least = 0, most = 1;    ///< of the value; of `height` those of the facts
+  std::vector<MapPlane> planes;  ///< what it is computed from
   float (*value)(const float* planes, const ChannelFacts& facts);  ///< of one pixel
   std::optional<float> neutral = {};  ///< the value of a cloth that has nothing of the kind
 };

@@ -5,7 +5,7 @@
 
 #include "core/describe/field_json.h"
 
-namespace weft::app {
+namespace weft::exchange {
 
 void describe(Fields& fields, NumberLoss& l) {
   fields.value({"mean", "Of the difference", {}, kOrNull}, l.mean);
@@ -33,7 +33,7 @@ void describe(Fields& fields, ExportedTexture& f) {
   fields.value({"height", "Of the largest level, pixels", kAboveZero, kMustSay}, f.size.height);
   fields.value({"levels", "Of half the size each"}, f.levels);
   fields.value({"encoding", "Format and samples, in words"}, f.encoding);
-  fields.choice({"color", "What its numbers are"}, f.color, exchange::kColorSpaceNames);
+  fields.choice({"color", "What its numbers are"}, f.color, kColorSpaceNames);
   fields.value({"direction", "Of its normals: opengl or directx", {}, kUnlessEmpty}, f.direction);
   fields.value({"roughness", "What it has for roughness", {}, kUnlessEmpty}, f.roughness);
   fields.list({"channels", "In their order", {}, kMustSay}, f.channels);
@@ -98,4 +98,4 @@ Result<ExportFacts> read_export(const std::filesystem::path& folder) {
   return read_fields<ExportFacts>(*document, file.string());
 }
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -16,7 +16,7 @@
 
 // What export.json says of the files of a preset (weft.export/1).
 
-namespace weft::app {
+namespace weft::exchange {
 
 inline constexpr ProductKind kExportProduct = {"weft.export", "export.json", "export",
                                                "make it first with weft export"};
@@ -43,7 +43,7 @@ struct ExportedTexture {
   ColorSpace color = {};
   std::string direction = {}, roughness = {};  ///< empty: it has none
   std::vector<ExportedChannel> channels = {};
-  exchange::Loss lost = {};
+  Loss lost = {};
   std::string inside = {};  ///< the document that alone holds it; empty: it lies in the folder
 };
 
@@ -76,4 +76,4 @@ Json json_of(const ExportFacts& facts);
 /// Reads export.json of a folder. kNoInput, kBadData.
 Result<ExportFacts> read_export(const std::filesystem::path& folder);
 
-}  // namespace weft::app
+}  // namespace weft::exchange

@@ -9,7 +9,7 @@
 
 #include "core/base/percent.h"
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 // Something that may have grown.
@@ -86,4 +86,4 @@ bool is_graver(const MapChange& a, const MapChange& b) {
   return std::tuple(regression_weight(a), a.p95_deg) > std::tuple(regression_weight(b), b.p95_deg);
 }
 
-}  // namespace weft::batch
+}  // namespace weft::library

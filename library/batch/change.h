@@ -10,7 +10,7 @@
 
 // How a solve differs from the one before it.
 
-namespace weft::batch {
+namespace weft::library {
 
 /// The square of the maps that turned most, as a mean.
 struct WorstWindow {
@@ -58,4 +58,4 @@ double regression_weight(const MapChange& change);
 /// percentile.
 bool is_graver(const MapChange& a, const MapChange& b);
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 constexpr std::size_t kCurvePoints = 12;
@@ -94,4 +94,4 @@ Result<Spending> spend(std::span<const std::vector<LevelOption>> sessions, doubl
   return spending;
 }
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -11,7 +11,7 @@
 
 // Which level each session is solved at.
 
-namespace weft::batch {
+namespace weft::library {
 
 /// One level of one session. `seconds` is 0 where a solve of it is there, `degrees` are those of the whole
 /// cloth (deg_of_whole).
@@ -33,4 +33,4 @@ struct Spending {
 /// seconds spent. kUsage where not even the cheapest of all fit.
 Result<Spending> spend(std::span<const std::vector<LevelOption>> sessions, double seconds);
 
-}  // namespace weft::batch
+}  // namespace weft::library

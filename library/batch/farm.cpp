@@ -12,7 +12,7 @@
 #include <map>
 #include <utility>
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 constexpr std::uint64_t kMegabyte = 1 << 20;
@@ -21,11 +21,11 @@ constexpr const char* kFormat = "%F|%K|%T|%j|%k|%r";  // array, index, state, na
 constexpr std::size_t kFields = 6;
 constexpr const char* kComment = "tasks from ";
 
-std::string job_name_of(const Header& header) {
+std::string job_name_of(const BatchHeader& header) {
   return "weft-" + header.id;
 }
 
-std::string merge_name_of(const Header& header) {
+std::string merge_name_of(const BatchHeader& header) {
   return job_name_of(header) + "-merge";
 }
 
@@ -110,7 +110,7 @@ int asked_minutes(double expected_s, int expected_threads, int cores) {
   return static_cast<int>(std::ceil(std::min(most_minutes, (2 * expected_s * slower + 300) / 60)));
 }
 
-std::vector<TaskArray> arrays_of(const Header& header, std::span<const int> tasks, int cores,
+std::vector<TaskArray> arrays_of(const BatchHeader& header, std::span<const int> tasks, int cores,
                                  const FarmLimits& limits) {
   const int most = std::max(1, std::min(limits.array_size, limits.jobs));
   std::map<std::pair<int, std::uint64_t>, TaskArray> arrays;  // by chunk and class of memory
@@ -142,7 +142,7 @@ std::string indices_of(const TaskArray& array) {
   return text;
 }
 
-std::vector<std::string> array_command(const Header& header, const TaskArray& array,
+std::vector<std::string> array_command(const BatchHeader& header, const TaskArray& array,
                                        const FarmOptions& options, const FarmPlaces& places,
                                        std::span<const std::string> after) {
   std::vector<std::string> words = common_arguments(options, job_name_of(header), array.memory_bytes, after);
@@ -162,7 +162,7 @@ std::vector<std::string> array_command(const Header& header, const TaskArray& ar
   return words;
 }
 
-std::vector<std::string> merge_command(const Header& header, const FarmOptions& options,
+std::vector<std::string> merge_command(const BatchHeader& header, const FarmOptions& options,
                                        const FarmPlaces& places, std::span<const std::string> after) {
   const std::uint64_t memory_bytes =
       400 * kMegabyte + static_cast<std::uint64_t>(header.sessions + header.left_out) * 20'000;
@@ -183,16 +183,16 @@ Result<std::string> job_from(std::string_view said) {
                fmt::format("it printed \"{}\"", bare(said)), "look at squeue before it is submitted again"};
 }
 
-std::vector<std::string> queue_command(const Header& header) {
+std::vector<std::string> queue_command(const BatchHeader& header) {
   return {"squeue", "--noheader", "--array", "--name=" + job_name_of(header) + "," + merge_name_of(header),
           std::string("--format=") + kFormat};
 }
 
-int Queue::count(std::string_view state) const {
+int FarmQueue::count(std::string_view state) const {
   return static_cast<int>(std::ranges::count(tasks, state, &QueuedTask::state));
 }
 
-std::vector<std::string> Queue::jobs() const {
+std::vector<std::string> FarmQueue::jobs() const {
   std::vector<std::string> all;
   for (const QueuedTask& task : tasks) {
     if (std::ranges::find(all, task.job) == all.end()) all.push_back(task.job);
@@ -200,8 +200,8 @@ std::vector<std::string> Queue::jobs() const {
   return all;
 }
 
-Queue queue_from(std::string_view said, const Header& header) {
-  Queue queue;
+FarmQueue queue_from(std::string_view said, const BatchHeader& header) {
+  FarmQueue queue;
   for (const std::string_view line : parts_of(said, '\n')) {
     const std::vector<std::string_view> fields = parts_of(bare(line), '|');
     if (fields.size() < kFields) continue;
@@ -216,7 +216,7 @@ Queue queue_from(std::string_view said, const Header& header) {
   return queue;
 }
 
-std::vector<int> not_queued(std::span<const int> missing, const Queue& queue) {
+std::vector<int> not_queued(std::span<const int> missing, const FarmQueue& queue) {
   std::vector<int> there;
   for (const QueuedTask& task : queue.tasks) there.push_back(task.task);
   std::ranges::sort(there);
@@ -230,4 +230,4 @@ bool is_to_be_requeued(std::string_view state, int restarts) {
   return bare(state) == "RUNNING" && restarts < kMostRequeues;
 }
 
-}  // namespace weft::batch
+}  // namespace weft::library

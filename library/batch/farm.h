@@ -14,7 +14,7 @@
 // A batch as array jobs of Slurm (manual pages sbatch, squeue and slurm.conf of 22.05): what is asked of its
 // programs, and what is read from what they say. Nothing is run here.
 
-namespace weft::batch {
+namespace weft::library {
 
 /// One word of a command, quoted for a shell where it must be.
 std::string shell_word(const std::string& text);
@@ -51,7 +51,7 @@ int asked_minutes(double expected_s, int expected_threads, int cores);
 
 /// The tasks, rising, as array jobs: tasks whose memory is within a power of two share one, and no index
 /// reaches what the cluster takes.
-std::vector<TaskArray> arrays_of(const Header& header, std::span<const int> tasks, int cores,
+std::vector<TaskArray> arrays_of(const BatchHeader& header, std::span<const int> tasks, int cores,
                                  const FarmLimits& limits);
 
 /// "0-3,7": indices of an array, as sbatch reads them.
@@ -64,18 +64,18 @@ struct FarmPlaces {
 
 /// sbatch with all its arguments for one array; it prints the job's number. `after`: numbers of jobs that end
 /// before it begins.
-std::vector<std::string> array_command(const Header& header, const TaskArray& array,
+std::vector<std::string> array_command(const BatchHeader& header, const TaskArray& array,
                                        const FarmOptions& options, const FarmPlaces& places,
                                        std::span<const std::string> after);
 /// The same for the report, once these have ended in whatever way.
-std::vector<std::string> merge_command(const Header& header, const FarmOptions& options,
+std::vector<std::string> merge_command(const BatchHeader& header, const FarmOptions& options,
                                        const FarmPlaces& places, std::span<const std::string> after);
 
 /// The number of a job in what `sbatch --parsable` printed. kProtocol.
 Result<std::string> job_from(std::string_view said);
 
 /// squeue with its arguments for this batch.
-std::vector<std::string> queue_command(const Header& header);
+std::vector<std::string> queue_command(const BatchHeader& header);
 
 /// A task that Slurm has queued or runs.
 struct QueuedTask {
@@ -85,7 +85,7 @@ struct QueuedTask {
   std::string reason;  ///< why it waits: "BeginTime"
 };
 
-struct Queue {
+struct FarmQueue {
   std::vector<QueuedTask> tasks;
   std::vector<std::string> merges;  ///< numbers of jobs
 
@@ -93,10 +93,10 @@ struct Queue {
   std::vector<std::string> jobs() const;  ///< numbers of arrays, each once
 };
 /// What squeue printed; lines of other batches are left out.
-Queue queue_from(std::string_view said, const Header& header);
+FarmQueue queue_from(std::string_view said, const BatchHeader& header);
 
 /// Tasks that are neither done nor queued, of those without a result.
-std::vector<int> not_queued(std::span<const int> missing, const Queue& queue);
+std::vector<int> not_queued(std::span<const int> missing, const FarmQueue& queue);
 
 /// So many times a task that was stopped queues itself again.
 inline constexpr int kMostRequeues = 3;
@@ -105,4 +105,4 @@ inline constexpr int kMostRequeues = 3;
 /// was cancelled, or that Slurm queues again by itself), and it has not done so too often.
 bool is_to_be_requeued(std::string_view state, int restarts);
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -10,13 +10,13 @@
 #include <unordered_map>
 #include <utility>
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 constexpr std::size_t kClasses = 4;  // from the narrowest
 
 // The class of a session, by how narrow it is.
-std::string class_of(const Traits& t, std::size_t width) {
+std::string class_of(const SessionTraits& t, std::size_t width) {
   const std::string size = fmt::format("{:.3f}", t.megapixels);
   switch (width) {
     case 0:
@@ -30,7 +30,7 @@ std::string class_of(const Traits& t, std::size_t width) {
   }
 }
 
-double work_of(const Traits& t) {
+double work_of(const SessionTraits& t) {
   return std::max(t.megapixels, 1e-6) * std::max(t.frames, 1);
 }
 
@@ -62,14 +62,14 @@ using Classes = std::array<std::unordered_map<std::string, KnownLevels>, kClasse
 using Turns = std::unordered_map<std::string, std::vector<Moments>>;
 
 // Sessions that were solved alike so far, of one cloth; without a cloth the wider class.
-std::string turn_class(const Traits& t, bool of_cloth) {
+std::string turn_class(const SessionTraits& t, bool of_cloth) {
   return fmt::format("{}\n{}\n{}", t.before, t.calibration, of_cloth ? t.fabric : "");
 }
 
-void learn(std::span<const Traits> sessions, std::span<const Measured> measured, Classes& classes,
-           Turns& turns) {
-  for (const Measured& each : measured) {
-    const Traits& traits = sessions[each.session];
+void learn(std::span<const SessionTraits> sessions, std::span<const MeasuredSession> measured,
+           Classes& classes, Turns& turns) {
+  for (const MeasuredSession& each : measured) {
+    const SessionTraits& traits = sessions[each.session];
     for (std::size_t width = 0; width < kClasses; ++width) {
       KnownLevels& known = classes[width][class_of(traits, width)];
       known.resize(each.levels.size());
@@ -90,7 +90,7 @@ void learn(std::span<const Traits> sessions, std::span<const Measured> measured,
   }
 }
 
-std::vector<const KnownLevels*> known_of(const Traits& traits, const Classes& classes) {
+std::vector<const KnownLevels*> known_of(const SessionTraits& traits, const Classes& classes) {
   std::vector<const KnownLevels*> known;
   for (std::size_t width = 0; width < kClasses; ++width) {
     const auto found = classes[width].find(class_of(traits, width));
@@ -99,7 +99,7 @@ std::vector<const KnownLevels*> known_of(const Traits& traits, const Classes& cl
   return known;
 }
 
-std::optional<double> turn_of(const Traits& traits, std::size_t level, const Turns& turns) {
+std::optional<double> turn_of(const SessionTraits& traits, std::size_t level, const Turns& turns) {
   if (traits.before.empty()) return {};
   for (const bool of_cloth : {true, false}) {
     const auto found = turns.find(turn_class(traits, of_cloth));
@@ -110,7 +110,7 @@ std::optional<double> turn_of(const Traits& traits, std::size_t level, const Tur
   return {};
 }
 
-std::vector<Forecast> forecast_of(const Traits& traits, const Classes& classes, const Turns& turns) {
+std::vector<Forecast> forecast_of(const SessionTraits& traits, const Classes& classes, const Turns& turns) {
   const std::vector<const KnownLevels*> known = known_of(traits, classes);
   std::vector<Forecast> levels(known.front()->size());
   for (std::size_t l = 0; l < levels.size(); ++l) {
@@ -132,7 +132,7 @@ std::vector<Forecast> forecast_of(const Traits& traits, const Classes& classes, 
 
 }  // namespace
 
-std::vector<std::size_t> choose_sample(std::span<const Traits> sessions, std::size_t most) {
+std::vector<std::size_t> choose_sample(std::span<const SessionTraits> sessions, std::size_t most) {
   std::map<std::string, std::vector<std::size_t>> by_class;
   for (std::size_t i = 0; i < sessions.size(); ++i)
     by_class[class_of(sessions[i], 0) + "\n" + sessions[i].before].push_back(i);
@@ -156,20 +156,20 @@ std::vector<std::size_t> choose_sample(std::span<const Traits> sessions, std::si
   return sample;
 }
 
-std::vector<std::vector<Forecast>> carry_over(std::span<const Traits> sessions,
-                                              std::span<const Measured> measured) {
+std::vector<std::vector<Forecast>> carry_over(std::span<const SessionTraits> sessions,
+                                              std::span<const MeasuredSession> measured) {
   if (measured.empty()) return {};
   Classes classes;
   Turns turns;
   learn(sessions, measured, classes, turns);
   std::vector<std::vector<Forecast>> forecasts;
   forecasts.reserve(sessions.size());
-  for (const Traits& traits : sessions) forecasts.push_back(forecast_of(traits, classes, turns));
-  for (const Measured& each : measured) {
+  for (const SessionTraits& traits : sessions) forecasts.push_back(forecast_of(traits, classes, turns));
+  for (const MeasuredSession& each : measured) {
     forecasts[each.session] = each.levels;
     for (Forecast& level : forecasts[each.session]) level.is_measured = true;
   }
   return forecasts;
 }
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -11,10 +11,10 @@
 
 // Which sessions are measured, and what the others are expected to give and cost by those that were.
 
-namespace weft::batch {
+namespace weft::library {
 
 /// What is known of a session before it is opened.
-struct Traits {
+struct SessionTraits {
   std::string fabric, calibration;
   std::string before;  ///< how it was solved so far: method, version and calibration; empty: not at all
   double megapixels = 0;
@@ -24,10 +24,10 @@ struct Traits {
 /// Indices of at most `most` sessions, rising: as many of each class (cloth, calibration, size, frames, how
 /// it was solved so far) as of any other, the larger classes first, spread evenly over the sessions of the
 /// class.
-std::vector<std::size_t> choose_sample(std::span<const Traits> sessions, std::size_t most);
+std::vector<std::size_t> choose_sample(std::span<const SessionTraits> sessions, std::size_t most);
 
 /// A session that was measured: a forecast a level, in an order that all share.
-struct Measured {
+struct MeasuredSession {
   std::size_t session = 0;
   std::vector<Forecast> levels;
 };
@@ -37,7 +37,7 @@ struct Measured {
 /// size, of all, where seconds go by pixels times frames. The spread is the standard deviation in the
 /// narrowest class of two or more. An angle to the solve before is carried over only between sessions that
 /// were solved alike so far. None where nothing was measured.
-std::vector<std::vector<Forecast>> carry_over(std::span<const Traits> sessions,
-                                              std::span<const Measured> measured);
+std::vector<std::vector<Forecast>> carry_over(std::span<const SessionTraits> sessions,
+                                              std::span<const MeasuredSession> measured);
 
-}  // namespace weft::batch
+}  // namespace weft::library

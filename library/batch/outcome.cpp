@@ -9,12 +9,12 @@
 #include "core/describe/error_json.h"
 #include "core/describe/field_json.h"
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 constexpr const char* kSchema = "weft.batch-result/1";
 
-void describe_done(Fields& fields, Outcome& o) {
+void describe_done(Fields& fields, TaskOutcome& o) {
   fields.value({"solve", "Its id", {}, kMustSay}, o.solve);
   fields.value({"folder", "Where it is", {}, kMustSay}, o.folder);
   fields.value({"stored", "The folder is where it was sent to, which this machine may not see"}, o.is_stored);
@@ -36,7 +36,7 @@ void describe_done(Fields& fields, Outcome& o) {
 
 }  // namespace
 
-bool operator==(const Outcome& a, const Outcome& b) {
+bool operator==(const TaskOutcome& a, const TaskOutcome& b) {
   return line_of(a) == line_of(b);
 }
 
@@ -58,7 +58,7 @@ bool is_of_session(ErrorKind kind) {
   return false;
 }
 
-void describe(Fields& fields, Outcome& o) {
+void describe(Fields& fields, TaskOutcome& o) {
   fields.value({"plan", "Id of the plan", {}, kMustSay}, o.plan);
   fields.value({"session", "Its folder", {}, kMustSay}, o.session);
   fields.choice({"state", "What became of it", {}, kMustSay}, o.state, kStateNames);
@@ -72,28 +72,28 @@ void describe(Fields& fields, Outcome& o) {
   fields.only_if(o.is_done(), [&] { describe_done(fields, o); });
 }
 
-std::string line_of(const Outcome& outcome) {
+std::string line_of(const TaskOutcome& outcome) {
   Json json = {{"schema", fmt::format("{}{}", kSchema, outcome.solved ? ".1" : "")}};
   write_fields(json, outcome);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-std::optional<Outcome> outcome_from_line(std::string_view line) {
+std::optional<TaskOutcome> outcome_from_line(std::string_view line) {
   const Json json = Json::parse(line, nullptr, false);
   if (!json.is_object()) return {};
   const Json schema = json.value("schema", Json());
   if (!schema.is_string() || !schema.get<std::string>().starts_with(kSchema)) return {};
-  Result<Outcome> outcome = read_fields<Outcome>(json, "result");
+  Result<TaskOutcome> outcome = read_fields<TaskOutcome>(json, "result");
   return outcome ? std::optional(std::move(*outcome)) : std::nullopt;
 }
 
-void add_histories(std::string_view lines, const std::string& plan, std::map<std::string, History>& all) {
+void add_histories(std::string_view lines, const std::string& plan, std::map<std::string, TaskHistory>& all) {
   while (!lines.empty()) {
     const std::size_t end = std::min(lines.find('\n'), lines.size());
-    std::optional<Outcome> outcome = outcome_from_line(lines.substr(0, end));
+    std::optional<TaskOutcome> outcome = outcome_from_line(lines.substr(0, end));
     lines.remove_prefix(std::min(end + 1, lines.size()));
     if (!outcome || outcome->plan != plan) continue;
-    History& history = all[outcome->session];
+    TaskHistory& history = all[outcome->session];
     ++history.attempts;
     if (outcome->is_result()) {
       history.result = std::move(*outcome);
@@ -104,4 +104,4 @@ void add_histories(std::string_view lines, const std::string& plan, std::map<std
   }
 }
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -16,9 +16,9 @@
 // What became of a session: a line of RESULTS/task-N.jsonl (weft.batch-result/1, docs/formats.md). Lines are
 // only added; of a session the last one that is a result counts.
 
-namespace weft::batch {
+namespace weft::library {
 
-enum class State {
+enum class TaskState {
   kSolved,
   kThere,   ///< a complete solve of the same inputs was found
   kFailed,  ///< a result too: it is not tried again unless that is asked for
@@ -26,9 +26,9 @@ enum class State {
 };
 inline constexpr std::array kStateNames = {"solved", "there", "failed", "lost"};
 
-struct Outcome {
+struct TaskOutcome {
   std::string plan, session;
-  State state = State::kLost;
+  TaskState state = TaskState::kLost;
   std::optional<Error> error = {};  ///< of kFailed and kLost
   std::string solve, folder;        ///< id, and where it is
   bool is_stored = false;           ///< `folder` is where it was sent to, which this machine may not see
@@ -50,29 +50,29 @@ struct Outcome {
   std::string no_change = {};              ///< why it could not be compared with the solve before
 
   double solved_share() const { return solved.value_or(1 - unsolved); }
-  bool is_result() const { return state != State::kLost; }
-  bool is_done() const { return state == State::kSolved || state == State::kThere; }
-  friend bool operator==(const Outcome&, const Outcome&);
+  bool is_result() const { return state != TaskState::kLost; }
+  bool is_done() const { return state == TaskState::kSolved || state == TaskState::kThere; }
+  friend bool operator==(const TaskOutcome&, const TaskOutcome&);
 };
 
-void describe(Fields& fields, Outcome& outcome);
+void describe(Fields& fields, TaskOutcome& outcome);
 
 /// Whether an error says something of the session: then it is remembered. What says something of the machine
 /// or the hour is not.
 bool is_of_session(ErrorKind kind);
 
 /// One line, with its end.
-std::string line_of(const Outcome& outcome);
+std::string line_of(const TaskOutcome& outcome);
 /// Nothing for a line that was cut short by a kill, or is none.
-std::optional<Outcome> outcome_from_line(std::string_view line);
+std::optional<TaskOutcome> outcome_from_line(std::string_view line);
 
 /// What the lines say of one session.
-struct History {
-  std::optional<Outcome> result = {};  ///< the last result
-  std::optional<Outcome> lost = {};    ///< the last line after it that is none
+struct TaskHistory {
+  std::optional<TaskOutcome> result = {};  ///< the last result
+  std::optional<TaskOutcome> lost = {};    ///< the last line after it that is none
   int attempts = 0;
 };
 /// Adds what lines of this plan say, by session.
-void add_histories(std::string_view lines, const std::string& plan, std::map<std::string, History>& all);
+void add_histories(std::string_view lines, const std::string& plan, std::map<std::string, TaskHistory>& all);
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -10,7 +10,7 @@
 #include "core/base/sha256.h"
 #include "core/describe/field_json.h"
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -161,7 +161,7 @@ void describe(Fields& fields, Spent& s) {
   fields.value({"mean_deg", "That they buy, over the whole cloth, degrees", {}, kMustSay}, s.mean_deg);
 }
 
-void describe(Fields& fields, Header& h) {
+void describe(Fields& fields, BatchHeader& h) {
   fields.value({"id", "16 digits of the SHA-256 of all else", {}, kMustSay}, h.id);
   fields.value({"archive", "The folder that holds all sessions", {}, kMustSay}, h.archive);
   fields.value(
@@ -185,7 +185,7 @@ void describe(Fields& fields, Header& h) {
 
 namespace {
 
-Json document_of(const Header& header) {
+Json document_of(const BatchHeader& header) {
   const bool has_shares =
       std::ranges::any_of(header.levels, [](const LevelTotal& each) { return each.solved.has_value(); });
   Json json = {{"schema", fmt::format("{}{}", kPlanSchema, has_shares ? ".1" : "")}};
@@ -219,8 +219,8 @@ void share_out(std::vector<PlannedSolve>& solves, double task_seconds) {
   }
 }
 
-std::string text_of(Plan& plan) {
-  Header& header = plan.header;
+std::string text_of(BatchPlan& plan) {
+  BatchHeader& header = plan.header;
   std::string lines;
   header.tasks.clear();
   for (const PlannedSolve& planned : plan.solves) {
@@ -240,7 +240,7 @@ std::string text_of(Plan& plan) {
   return line_of(document_of(header)) + lines;
 }
 
-Result<Header> header_from_line(std::string_view line, const std::string& where) {
+Result<BatchHeader> header_from_line(std::string_view line, const std::string& where) {
   const Json json = Json::parse(line, nullptr, false);
   if (!json.is_object()) return no_plan(where, "its first line is no JSON object");
   const std::string schema =
@@ -249,7 +249,7 @@ Result<Header> header_from_line(std::string_view line, const std::string& where)
     return no_plan(where, fmt::format("its schema is \"{}\"; this program reads {}", schema, kPlanSchema),
                    "make it again with weft batch plan of this version");
   }
-  return read_fields<Header>(json, where);
+  return read_fields<BatchHeader>(json, where);
 }
 
 Result<std::vector<PlannedSolve>> solves_from_lines(std::string_view lines, const std::string& where) {
@@ -268,14 +268,14 @@ Result<std::vector<PlannedSolve>> solves_from_lines(std::string_view lines, cons
   return solves;
 }
 
-Result<Plan> plan_from_text(std::string_view text, const std::string& where) {
+Result<BatchPlan> plan_from_text(std::string_view text, const std::string& where) {
   const std::size_t end = std::min(text.find('\n'), text.size());
-  Result<Header> header = header_from_line(text.substr(0, end), where);
+  Result<BatchHeader> header = header_from_line(text.substr(0, end), where);
   if (!header) return std::move(header).error();
   const std::string_view lines = text.substr(std::min(end + 1, text.size()));
   if (id_of(Json::parse(text.substr(0, end)), lines) != header->id)
     return no_plan(where, "it was changed since it was written, or its end is missing");
-  Plan plan;
+  BatchPlan plan;
   plan.header = std::move(*header);
   std::optional<Error> wrong;
   for_each_line(lines, [&](std::string_view line) {
@@ -295,7 +295,7 @@ Result<Plan> plan_from_text(std::string_view text, const std::string& where) {
   return plan;
 }
 
-std::string solve_parent(const Header& header, const std::string& session) {
+std::string solve_parent(const BatchHeader& header, const std::string& session) {
   if (header.output.empty()) return (fs::path(session) / "solve").string();
   const fs::path below = fs::path(session).lexically_relative(header.archive);
   const bool leads_out = below.empty() || *below.begin() == "..";
@@ -303,4 +303,4 @@ std::string solve_parent(const Header& header, const std::string& session) {
       .string();
 }
 
-}  // namespace weft::batch
+}  // namespace weft::library

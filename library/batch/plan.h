@@ -18,7 +18,7 @@
 // session that is left out. The header says where the lines of each task lie, so that a task reads its own
 // alone.
 
-namespace weft::batch {
+namespace weft::library {
 
 inline constexpr const char* kPlanSchema = "weft.batch/1";  // 1.1 where shares of the cloth are in it
 
@@ -72,12 +72,12 @@ struct PlannedSolve {
 };
 
 /// Why a session is not solved.
-enum class Reason { kThere, kUnsolvable, kTurnsLittle, kNotGoodEnough };
+enum class SkipReason { kThere, kUnsolvable, kTurnsLittle, kNotGoodEnough };
 inline constexpr std::array kReasonNames = {"there", "unsolvable", "turns_little", "not_good_enough"};
 
 struct SkippedSession {
   std::string session;
-  Reason reason = Reason::kThere;
+  SkipReason reason = SkipReason::kThere;
   std::string kind = {};  ///< of an error: name_of(ErrorKind)
   std::string said;       ///< one sentence
   double seconds = 0;     ///< that are saved
@@ -127,7 +127,7 @@ struct TaskPlace {
   friend bool operator==(const TaskPlace&, const TaskPlace&) = default;
 };
 
-struct Header {
+struct BatchHeader {
   std::string id;       ///< 16 hexadecimal digits of the SHA-256 of all else
   std::string archive;  ///< the folder that holds all sessions
   std::string output;   ///< folder for solves beside the archive; empty: each in its session
@@ -142,20 +142,20 @@ struct Header {
   std::vector<TaskPlace> tasks;
   int sessions = 0, left_out = 0;
 
-  friend bool operator==(const Header&, const Header&) = default;
+  friend bool operator==(const BatchHeader&, const BatchHeader&) = default;
 };
 
-struct Plan {
-  Header header;
+struct BatchPlan {
+  BatchHeader header;
   std::vector<PlannedSolve> solves;  ///< by task
   std::vector<SkippedSession> left_out;
 
-  friend bool operator==(const Plan&, const Plan&) = default;
+  friend bool operator==(const BatchPlan&, const BatchPlan&) = default;
 };
 
 void describe(Fields& fields, PlannedSolve& planned);
 void describe(Fields& fields, SkippedSession& left_out);
-void describe(Fields& fields, Header& header);
+void describe(Fields& fields, BatchHeader& header);
 
 /// SHA-256 of what a solve depends on in session.json: all but what people say of the cloth (fabric,
 /// metadata), the current solve, and where copies lie.
@@ -169,17 +169,17 @@ void share_out(std::vector<PlannedSolve>& solves, double task_seconds);
 
 /// The text of a plan whose solves have their tasks, which rise from 0 by one; fills the header's id, tasks
 /// and counts.
-std::string text_of(Plan& plan);
+std::string text_of(BatchPlan& plan);
 
 /// Reads the first line. kBadData, `where` being the file's name for messages: no plan, or one of a newer
 /// version.
-Result<Header> header_from_line(std::string_view line, const std::string& where);
+Result<BatchHeader> header_from_line(std::string_view line, const std::string& where);
 /// Reads lines of solves.
 Result<std::vector<PlannedSolve>> solves_from_lines(std::string_view lines, const std::string& where);
 /// Reads all of it. kBadData also where lines are missing, or were changed since they were written.
-Result<Plan> plan_from_text(std::string_view text, const std::string& where);
+Result<BatchPlan> plan_from_text(std::string_view text, const std::string& where);
 
 /// Where the solves of a session go: the parent of the folders by id.
-std::string solve_parent(const Header& header, const std::string& session);
+std::string solve_parent(const BatchHeader& header, const std::string& session);
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -5,7 +5,7 @@
 
 #include "core/base/json_document.h"
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 constexpr std::string_view kEnding = ".weft", kBlanks = " \t\r";
@@ -61,4 +61,4 @@ std::vector<std::string> sessions_of_text(std::string_view text) {
   return folders;
 }
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace weft::batch {
+namespace weft::library {
 
 /// The folders of sessions that a text names, in its order: what other verbs print, or a list that somebody
 /// wrote.
@@ -16,4 +16,4 @@ namespace weft::batch {
 /// headings.
 std::vector<std::string> sessions_of_text(std::string_view text);
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -13,26 +13,26 @@
 #include "core/describe/error_json.h"
 #include "core/solve/solve.h"
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 // What a wrong calibration makes a solve say (solve/report/solve_report.h).
 constexpr std::array<std::string_view, 4> kOfCalibration = {"LIGHTS_DO_NOT_FIT", "LEDS_EXCHANGED", "LED_DEAD",
                                                             "LED_GAIN"};
 
-bool speaks_against_lights(const Outcome& outcome) {
+bool speaks_against_lights(const TaskOutcome& outcome) {
   return std::ranges::any_of(outcome.warnings, [](const std::string& warning) {
     return std::ranges::find(kOfCalibration, std::string_view(warning)) != kOfCalibration.end();
   });
 }
 
-void count(const Row& row, Summary& summary) {
+void count(const BatchRow& row, BatchSummary& summary) {
   if (row.attempts > 1) ++summary.second_attempts;
   if (row.has_failed()) ++summary.failed;
   if (row.is_missing()) ++summary.missing;
   if (!row.is_done()) return;
-  const Outcome& outcome = *row.result;
-  if (outcome.state == State::kThere) {
+  const TaskOutcome& outcome = *row.result;
+  if (outcome.state == TaskState::kThere) {
     ++summary.there;
     return;
   }
@@ -44,9 +44,9 @@ void count(const Row& row, Summary& summary) {
   summary.peak_bytes = std::max(summary.peak_bytes, outcome.peak_bytes);
 }
 
-std::vector<Cause> causes_of(std::span<const Row> rows) {
+std::vector<Cause> causes_of(std::span<const BatchRow> rows) {
   std::map<std::pair<std::string, std::string>, Cause> by_name;
-  for (const Row& row : rows) {
+  for (const BatchRow& row : rows) {
     if (row.is_done()) continue;
     const std::optional<Error> error = row.result ? row.result->error
                                        : row.lost ? row.lost->error
@@ -73,7 +73,7 @@ std::tuple<double, double, double> suspicion(const ByCalibration& c) {
           c.mean_turn_deg.value_or(0)};
 }
 
-std::vector<ByCalibration> by_calibration(std::span<const Row> rows) {
+std::vector<ByCalibration> by_calibration(std::span<const BatchRow> rows) {
   struct Gathered {
     ByCalibration all;
     std::vector<double> left_out;
@@ -81,9 +81,9 @@ std::vector<ByCalibration> by_calibration(std::span<const Row> rows) {
     int compared = 0;
   };
   std::map<std::string, Gathered> gathered;
-  for (const Row& row : rows) {
+  for (const BatchRow& row : rows) {
     if (!row.is_done()) continue;
-    const Outcome& outcome = *row.result;
+    const TaskOutcome& outcome = *row.result;
     Gathered& of = gathered[row.planned->calibration];
     of.all.calibration = row.planned->calibration;
     of.all.rig = row.planned->rig;
@@ -114,8 +114,8 @@ std::vector<ByCalibration> by_calibration(std::span<const Row> rows) {
 
 }  // namespace
 
-std::vector<Row> rows_of(const Plan& plan, const std::map<std::string, History>& histories) {
-  std::vector<Row> rows;
+std::vector<BatchRow> rows_of(const BatchPlan& plan, const std::map<std::string, TaskHistory>& histories) {
+  std::vector<BatchRow> rows;
   rows.reserve(plan.solves.size());
   for (const PlannedSolve& planned : plan.solves) {
     const auto found = histories.find(planned.session);
@@ -128,11 +128,11 @@ std::vector<Row> rows_of(const Plan& plan, const std::map<std::string, History>&
   return rows;
 }
 
-Summary summarize(std::span<const Row> rows) {
-  Summary summary;
+BatchSummary summarize(std::span<const BatchRow> rows) {
+  BatchSummary summary;
   std::set<int> missing;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Row& row = rows[i];
+    const BatchRow& row = rows[i];
     count(row, summary);
     if (row.is_missing()) missing.insert(row.planned->task);
     if (row.is_done() && row.result->solved_share() < kLeastSolved) summary.barely_solved.push_back(i);
@@ -171,7 +171,7 @@ void describe(Fields& fields, ByCalibration& c) {
 
 namespace {
 
-void describe_done(Fields& fields, PlannedSolve& planned, Outcome& o) {
+void describe_done(Fields& fields, PlannedSolve& planned, TaskOutcome& o) {
   double solved = o.solved_share();
   fields.value({"solve", "Its id"}, o.solve);
   fields.value({"folder", "Where it is"}, o.folder);
@@ -191,9 +191,9 @@ void describe_done(Fields& fields, PlannedSolve& planned, Outcome& o) {
 
 }  // namespace
 
-void describe(Fields& fields, Row& row) {
+void describe(Fields& fields, BatchRow& row) {
   PlannedSolve planned = row.planned != nullptr ? *row.planned : PlannedSolve();
-  Outcome outcome = row.result.value_or(row.lost.value_or(Outcome()));
+  TaskOutcome outcome = row.result.value_or(row.lost.value_or(TaskOutcome()));
   std::string state = row.result ? kStateNames[static_cast<std::size_t>(row.result->state)] : "missing";
   fields.value({"session", "Its folder"}, planned.session);
   fields.value({"task", "From 0"}, planned.task);
@@ -245,4 +245,4 @@ void describe(Fields& fields, SummaryDocument& document) {
   fields.list({"sessions", "One each"}, rows);
 }
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -14,17 +14,17 @@
 
 // What a batch came to.
 
-namespace weft::batch {
+namespace weft::library {
 
 /// A session of the plan and what became of it. Neither solved nor failed: missing.
-struct Row {
+struct BatchRow {
   const PlannedSolve* planned = nullptr;
-  std::optional<Outcome> result = {};  ///< of kSolved, kThere or kFailed
-  std::optional<Outcome> lost = {};    ///< why the last attempt after it was none
+  std::optional<TaskOutcome> result = {};  ///< of kSolved, kThere or kFailed
+  std::optional<TaskOutcome> lost = {};    ///< why the last attempt after it was none
   int attempts = 0;
 
   bool is_done() const { return result && result->is_done(); }
-  bool has_failed() const { return result && result->state == State::kFailed; }
+  bool has_failed() const { return result && result->state == TaskState::kFailed; }
   bool is_missing() const { return !result; }
 };
 
@@ -50,7 +50,7 @@ struct ByCalibration {
   std::optional<double> usual_left_out = {};  ///< the lower median of all calibrations, where this stands out
 };
 
-struct Summary {
+struct BatchSummary {
   int solved = 0, there = 0, failed = 0, missing = 0;
   int second_attempts = 0;                    ///< sessions that were begun more than once
   double seconds = 0, predicted_seconds = 0;  ///< of solved sessions, node-seconds
@@ -71,15 +71,15 @@ struct Summary {
 };
 
 /// The rows of a plan, by what its tasks have written.
-std::vector<Row> rows_of(const Plan& plan, const std::map<std::string, History>& histories);
+std::vector<BatchRow> rows_of(const BatchPlan& plan, const std::map<std::string, TaskHistory>& histories);
 
-Summary summarize(std::span<const Row> rows);
+BatchSummary summarize(std::span<const BatchRow> rows);
 
 /// What a batch came to, for programs.
 struct SummaryDocument {
-  Summary summary;
-  std::vector<Row> rows;
+  BatchSummary summary;
+  std::vector<BatchRow> rows;
 };
 void describe(Fields& fields, SummaryDocument& document);
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -180,7 +180,7 @@ Entry read_entry(const Found& found) {
     entry.taken = session->shots.front().time;
   if (found.solved != 0) {
     entry.solves = static_cast<int>(list_solves(found.folder).size());
-    entry.current_solve = current_solve(*session);
+    entry.current_solve = solve::current_solve(*session);
   }
   return entry;
 }

@@ -99,11 +99,11 @@ std::string id_rule(const Json& value) {
 }
 
 std::string left_out_rule(const Json& value) {
-  const bool is_list = value.is_array() && value.size() <= kMostLeftOut;
+  const bool is_list = value.is_array() && value.size() <= solve::kMostLeftOut;
   const bool has_indices = is_list && std::ranges::all_of(value, [](const Json& shot) {
                              return shot.is_number_integer() && shot >= 0 && shot < 1'000'000;
                            });
-  return has_indices ? "" : fmt::format("must be a list of at most {} indices of shots", kMostLeftOut);
+  return has_indices ? "" : fmt::format("must be a list of at most {} indices of shots", solve::kMostLeftOut);
 }
 
 Error refused(const std::string& key, const std::string& rule) {
@@ -169,7 +169,7 @@ Json in_order(const std::string& key, const Json& value) {
 bool note_choice(Session& session) {
   Json& document = session.document;
   const bool is_one = document.contains("current_solve");
-  const Json now = is_one ? Json(digest_of_photographs(session)) : Json();
+  const Json now = is_one ? Json(solve::digest_of_photographs(session)) : Json();
   if (document.value("current_solve_for", Json()) == now) return false;
   if (is_one) {
     document["current_solve_for"] = now;
@@ -250,7 +250,7 @@ Json json_of(const Metadata& m) {
 Result<MetadataChange> change_metadata(const std::filesystem::path& folder, const Json& fields,
                                        const Provided& provided) {
   if (Result<void> ok = check_fields(fields); !ok) return std::move(ok).error();
-  const Result<Descriptor> lock = lock_session(folder);
+  const Result<Descriptor> lock = solve::lock_session(folder);
   if (!lock) return lock.error();
   Result<Session> session = read_session(folder);
   if (!session) return std::move(session).error();

@@ -33,7 +33,7 @@ std::vector<fs::path> made_from(const fs::path& session, const std::string& solv
 Result<std::vector<Prunable>> prunable(const fs::path& folder, int keep) {
   const Result<Session> session = read_session(folder);
   if (!session) return session.error();
-  const std::string current = current_solve(*session);
+  const std::string current = solve::current_solve(*session);
   std::vector<Product> solves = list_solves(folder);
   const std::size_t newest = std::min(solves.size(), static_cast<std::size_t>(std::max(keep, 0)));
   solves.resize(solves.size() - newest);
@@ -49,7 +49,7 @@ Result<std::vector<Prunable>> prunable(const fs::path& folder, int keep) {
 }
 
 Result<void> prune(const fs::path& folder, const std::vector<Prunable>& solves) {
-  const Result<Descriptor> lock = lock_session(folder);
+  const Result<Descriptor> lock = solve::lock_session(folder);
   if (!lock) return lock.error();
   for (const Prunable& solve : solves) {
     for (const fs::path& each : solve.folders) {

@@ -13,7 +13,7 @@
 #include "core/toml/toml_json.h"
 #include "library/catalogue/metadata.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -49,8 +49,8 @@ Result<void> take_key(const fs::path& file, const std::string& key, const Json& 
     return {};
   }
   if (key == "fabric") {
-    if (!value.is_string() || value.get<std::string>().size() > library::kLongestText)
-      return refused(file, key, fmt::format("must be a text of at most {} bytes", library::kLongestText));
+    if (!value.is_string() || value.get<std::string>().size() > kLongestText)
+      return refused(file, key, fmt::format("must be a text of at most {} bytes", kLongestText));
     said.fabric = value.get<std::string>();
     return {};
   }
@@ -61,7 +61,7 @@ Result<void> take_key(const fs::path& file, const std::string& key, const Json& 
     known.insert(known.end(), kMetadataKeys.begin(), kMetadataKeys.end());
     return refused(file, key.substr(0, 40), no_such_key(known, key));
   }
-  if (Result<void> ok = library::check_new_metadata(Json{{name, value}}); !ok)
+  if (Result<void> ok = check_new_metadata(Json{{name, value}}); !ok)
     return refused(file, key, ok.error().why);
   said.metadata[name] = value;
   return {};
@@ -71,7 +71,7 @@ Result<Json> document_of(const fs::path& file) {
   if (file.extension() == ".toml") {
     const Result<toml::table> table = read_toml(file);
     if (!table) return table.error();
-    return json_of(*table);
+    return weft::json_of(*table);
   }
   const Result<std::string> text = read_text(file);
   if (!text) return text.error();
@@ -117,4 +117,4 @@ std::vector<fs::path> descriptions_of(const std::vector<fs::path>& files, const 
   return wanted;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -11,7 +11,7 @@
 
 // What people wrote beside their photographs.
 
-namespace weft::app {
+namespace weft::library {
 
 /// Empty: nobody said.
 struct ImportDescription {
@@ -37,4 +37,4 @@ std::vector<std::filesystem::path> descriptions_of(const std::vector<std::filesy
                                                    const std::filesystem::path& folder,
                                                    const std::string& session);
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -13,7 +13,7 @@
 #include "core/base/product.h"
 #include "library/import/photographs_import.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,4 +142,4 @@ Result<void> run_import(const ImportProposal& plan, const JobContext& context) {
   return {};
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -5,7 +5,7 @@
 #include "core/base/result.h"
 #include "library/import/import_plan.h"
 
-namespace weft::app {
+namespace weft::library {
 
 /// Makes what the plan calls new, one folder after the other, each aside and published whole: frames linked
 /// or copied under the names of a session, the calibration, session.json with the digest of each frame. Files
@@ -14,4 +14,4 @@ namespace weft::app {
 /// photograph changed while it was copied), kCannotCreate, kInputOutput, kInterrupted.
 Result<void> run_import(const ImportProposal& plan, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::library

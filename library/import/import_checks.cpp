@@ -12,7 +12,7 @@
 #include "core/rig/same_camera.h"
 #include "core/rig/suits.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -111,4 +111,4 @@ Result<bool> is_same_session(const Session& there, const Session& wanted,
   return true;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

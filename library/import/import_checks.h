@@ -11,7 +11,7 @@
 
 // Whether photographs can be one session of a rig.
 
-namespace weft::app {
+namespace weft::library {
 
 /// Whether frames are of one kind, body, size, exposure, ISO, aperture and focal length, as far as they say.
 /// kBadData names two that differ.
@@ -36,4 +36,4 @@ Result<void> check_calibration(const Calibration& calibration, const Session& se
 Result<bool> is_same_session(const Session& there, const Session& wanted,
                              const std::vector<SourceFrame>& frames);
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -16,7 +16,7 @@
 #include "library/import/photographs_import.h"
 #include "library/import/source_groups.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -387,4 +387,4 @@ Json json_of(const ImportProposal& plan) {
           {"photographs", std::move(photographs)}, {"left_over", std::move(left_over)}};
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -19,7 +19,7 @@
 
 // Folders of photographs that other rigs and programs left, as sessions of weft: what would be made of them.
 
-namespace weft::app {
+namespace weft::library {
 
 /// How a session comes to its frames.
 enum class FrameLink {
@@ -66,7 +66,7 @@ struct ProposedPhotographs {
   ImportState state = ImportState::kNew;
   std::filesystem::path source;  ///< light file, or folder
   std::filesystem::path folder;  ///< that will be made
-  SolvePlan photos;
+  solve::SolvePlan photos;
   std::optional<Error> refusal;
 };
 
@@ -94,4 +94,4 @@ Result<ImportProposal> plan_import(const ImportOptions& options, const JobContex
 /// {"archive", "calibration", "rig", "sessions", "photographs", "left_over"}.
 Json json_of(const ImportProposal& plan);
 
-}  // namespace weft::app
+}  // namespace weft::library

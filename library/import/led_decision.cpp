@@ -9,7 +9,7 @@
 
 #include "core/base/statistics.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 constexpr double kDarkLevel = 0.1;  // of the median level: no LED lit, or one did not light
@@ -332,4 +332,4 @@ LedDecision decide_leds(const std::vector<SourceFrame>& frames, const std::vecto
   return Decider(frames, light, model, options).decided();
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -15,7 +15,7 @@
 
 // Which frame of a session belongs to which LED.
 
-namespace weft::app {
+namespace weft::library {
 
 /// What decides.
 enum class FrameOrder {
@@ -63,4 +63,4 @@ LedDecision decide_leds(const std::vector<SourceFrame>& frames, const std::vecto
 std::vector<std::size_t> order_of_names(const std::vector<SourceFrame>& frames);
 std::optional<std::vector<std::size_t>> order_of_times(const std::vector<SourceFrame>& frames);
 
-}  // namespace weft::app
+}  // namespace weft::library

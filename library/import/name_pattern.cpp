@@ -8,7 +8,7 @@
 #include <charconv>
 #include <utility>
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 constexpr std::size_t kLongestPattern = 500;
@@ -131,4 +131,4 @@ std::optional<NameParts> NamePattern::match(const std::filesystem::path& file) c
   return said;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

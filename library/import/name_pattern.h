@@ -14,7 +14,7 @@
 
 // What names of files say.
 
-namespace weft::app {
+namespace weft::library {
 
 /// Whether one name stands before another as people count: "DSC_9" before "DSC_10", capitals as small
 /// letters. Names that differ in nothing but that keep the order of their bytes.
@@ -47,4 +47,4 @@ class NamePattern {
   std::size_t depth_ = 1;
 };
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -11,19 +11,19 @@
 #include "core/base/text.h"
 #include "core/describe/field_json.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr const char* kSchema = "weft.photographs";
 
-ProposedPhotographs planned_by(const PhotoOptions& options, const std::string& name,
+ProposedPhotographs planned_by(const solve::PhotoOptions& options, const std::string& name,
                                const fs::path& archive) {
   ProposedPhotographs planned;
   planned.source = options.light_file.empty() ? options.folder : options.light_file;
   planned.folder = archive / (file_name_of(name, "photographs") + ".photos");
-  Result<SolvePlan> photos = plan_photos(options);
+  Result<solve::SolvePlan> photos = solve::plan_photos(options);
   if (!photos) {
     planned.state = ImportState::kRefused;
     planned.refusal = std::move(photos).error();
@@ -55,12 +55,12 @@ std::vector<ProposedPhotographs> plan_photographs(const SourceFolders& found, co
     const bool is_alone = std::ranges::count(found.light_files, folder, &fs::path::parent_path) == 1;
     std::string name = folder.filename().string();
     if (!is_alone) name += "_" + file.stem().string();
-    PhotoOptions options;
+    solve::PhotoOptions options;
     options.light_file = file;
     all.push_back(planned_by(options, name, archive));
   }
   for (const fs::path& folder : found.photo_folders) {
-    PhotoOptions options;
+    solve::PhotoOptions options;
     options.folder = folder;
     all.push_back(planned_by(options, folder.filename().string(), archive));
   }
@@ -74,7 +74,7 @@ std::vector<ProposedPhotographs> plan_photographs(const SourceFolders& found, co
   return all;
 }
 
-std::vector<std::string> stored_names(const SolvePlan& photos) {
+std::vector<std::string> stored_names(const solve::SolvePlan& photos) {
   static const std::set<std::string> kOwn = {"filenames.txt", "light_directions.txt", "light_intensities.txt",
                                              "mask.png", "photographs.json"};
   std::vector<std::string> names;
@@ -107,7 +107,7 @@ Json json_of(const ImportedPhotographs& facts) {
 }
 
 PhotographTexts texts_of(const ProposedPhotographs& planned) {
-  const SolvePlan& photos = planned.photos;
+  const solve::SolvePlan& photos = planned.photos;
   const std::vector<std::string> names = stored_names(photos);
   PhotographTexts texts;
   texts.facts = {planned.source.string(), photos.input.photographs, photos.input.transfer, photos.input.mask};
@@ -122,4 +122,4 @@ PhotographTexts texts_of(const ProposedPhotographs& planned) {
   return texts;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -10,7 +10,7 @@
 #include "library/import/import_plan.h"
 #include "library/import/source_folders.h"
 
-namespace weft::app {
+namespace weft::library {
 
 /// What would become of light files and folders in the layout of the DiLiGenT benchmark: NAME.photos in the
 /// archive, after the folder, of several light files in one also after the file. What cannot be solved as it
@@ -36,6 +36,6 @@ struct PhotographTexts {
 PhotographTexts texts_of(const ProposedPhotographs& planned);
 
 /// The names of the photographs in the folder that is made: their own, where each has another one.
-std::vector<std::string> stored_names(const SolvePlan& photos);
+std::vector<std::string> stored_names(const solve::SolvePlan& photos);
 
-}  // namespace weft::app
+}  // namespace weft::library

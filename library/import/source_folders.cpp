@@ -12,7 +12,7 @@
 #include "core/image_io/linear_image.h"
 #include "library/import/name_pattern.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -130,4 +130,4 @@ Result<SourceFolders> look_into(const std::vector<std::string>& folders) {
   return found;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

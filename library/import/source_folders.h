@@ -9,7 +9,7 @@
 
 // What lies in the folders of a foreign archive, by names alone.
 
-namespace weft::app {
+namespace weft::library {
 
 /// A file that may be a frame.
 struct SourceFile {
@@ -38,4 +38,4 @@ bool is_raw_name(const std::filesystem::path& file);
 /// photographs under distant lights are no frames. kNoInput for a folder that cannot be listed.
 Result<SourceFolders> look_into(const std::vector<std::string>& folders);
 
-}  // namespace weft::app
+}  // namespace weft::library

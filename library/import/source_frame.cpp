@@ -12,7 +12,7 @@
 #include "core/base/statistics.h"
 #include "core/image_io/linear_image.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 constexpr double kBright = 0.9;         // share of the patches
@@ -99,4 +99,4 @@ double level_of(const std::vector<double>& light) {
   return read.empty() ? 1 : lower_quantile(read, kBright);
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

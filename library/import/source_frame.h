@@ -12,7 +12,7 @@
 #include "library/import/name_pattern.h"
 #include "library/import/source_folders.h"
 
-namespace weft::app {
+namespace weft::library {
 
 /// A photograph that is to be of a session, and what it says of itself.
 struct SourceFrame {
@@ -44,4 +44,4 @@ Result<std::vector<double>> light_of(const SourceFrame& frame, const capture::Pa
 /// full.
 double level_of(const std::vector<double>& light);
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -13,7 +13,7 @@
 #include "library/catalogue/session_name.h"
 #include "library/import/led_decision.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,4 +185,4 @@ Result<std::vector<SourceGroup>> group_frames(const std::vector<SourceFile>& fil
   return groups;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

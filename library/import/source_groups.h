@@ -15,7 +15,7 @@
 
 // Which photographs are of one session.
 
-namespace weft::app {
+namespace weft::library {
 
 /// Photographs of one session, to all that names, folders and times tell.
 struct SourceGroup {
@@ -40,4 +40,4 @@ Result<std::vector<SourceGroup>> group_frames(const std::vector<SourceFile>& fil
                                               const GroupingOptions& options, const JobContext& context,
                                               std::vector<LeftOver>& left_over);
 
-}  // namespace weft::app
+}  // namespace weft::library

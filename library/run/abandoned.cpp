@@ -7,7 +7,7 @@
 
 #include "core/base/partial_name.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,4 +64,4 @@ int remove_folders(const std::vector<fs::path>& folders) {
   return gone;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace weft::app {
+namespace weft::library {
 
 /// Folders that processes left half made in `parent` (core/base/files.h: PartialFolder) and that nobody works
 /// on: their process of this machine is gone, or they are of another machine and nothing in them has changed
@@ -18,4 +18,4 @@ std::vector<std::filesystem::path> abandoned_of(const std::filesystem::path& ses
 /// Removes them; how many went.
 int remove_folders(const std::vector<std::filesystem::path>& folders);
 
-}  // namespace weft::app
+}  // namespace weft::library

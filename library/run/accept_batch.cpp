@@ -13,7 +13,7 @@
 #include "library/run/merge_batch.h"
 #include "solve/session/current.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ bool is_named(const std::string& session, const std::vector<std::string>& names)
 Result<void> check_names(const BatchState& state, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const bool is_there = std::ranges::any_of(
-        state.rows, [&](const batch::Row& row) { return is_named(row.planned->session, {name}); });
+        state.rows, [&](const BatchRow& row) { return is_named(row.planned->session, {name}); });
     if (!is_there)
       return Error{ErrorKind::kUsage, "no such session", name, "the plan has none of this name",
                    "weft batch merge lists them"};
@@ -36,7 +36,7 @@ Result<void> check_names(const BatchState& state, const std::vector<std::string>
   return {};
 }
 
-Accepted accept_one(const batch::Row& row, const AcceptBatchOptions& options) {
+Accepted accept_one(const BatchRow& row, const AcceptBatchOptions& options) {
   Accepted accepted = {row.planned->session, row.planned->solve, row.planned->before, false, ""};
   if (!row.is_done()) {
     accepted.why = "it is not solved";
@@ -44,7 +44,7 @@ Accepted accept_one(const batch::Row& row, const AcceptBatchOptions& options) {
   }
   accepted.solve = row.result->solve;
   if (row.result->change && !options.with_worse) {
-    const std::vector<std::string> worse = batch::regressions(*row.result->change);
+    const std::vector<std::string> worse = regressions(*row.result->change);
     if (!worse.empty()) accepted.why = fmt::format("it became worse: {}", fmt::join(worse, "; "));
     if (!worse.empty()) return accepted;
   }
@@ -53,8 +53,8 @@ Accepted accept_one(const batch::Row& row, const AcceptBatchOptions& options) {
     accepted.why = session.error().message();
     return accepted;
   }
-  const library::SessionSolves solves = library::solves_of(*session);
-  const library::ChoosableSolve* const current = solves.current_one();
+  const solve::SessionSolves solves = solve::solves_of(*session);
+  const solve::ChoosableSolve* const current = solves.current_one();
   const bool is_current = current != nullptr && current->id == accepted.solve;
   if (is_current && solves.is_chosen) {
     accepted.why = "it is the current one already";
@@ -66,8 +66,8 @@ Accepted accept_one(const batch::Row& row, const AcceptBatchOptions& options) {
   }
   accepted.is_moved = true;
   if (options.dry_run) return accepted;
-  const Result<library::MetadataChange> changed =
-      library::change_metadata(row.planned->session, {{"current_solve", accepted.solve}});
+  const Result<MetadataChange> changed =
+      change_metadata(row.planned->session, {{"current_solve", accepted.solve}});
   if (changed) return accepted;
   accepted.is_moved = false;
   accepted.why = changed.error().message();
@@ -88,7 +88,7 @@ Result<std::vector<Accepted>> accept_batch(const AcceptBatchOptions& options) {
   if (!state) return state.error();
   if (Result<void> ok = check_names(*state, options.sessions); !ok) return std::move(ok).error();
   std::vector<Accepted> all;
-  for (const batch::Row& row : state->rows) {
+  for (const BatchRow& row : state->rows) {
     if (options.sessions.empty() || is_named(row.planned->session, options.sessions))
       all.push_back(accept_one(row, options));
   }
@@ -99,18 +99,17 @@ Result<std::vector<Freed>> prune_batch(const fs::path& plan, int keep, bool yes)
   const Result<BatchState> state = read_own(plan);
   if (!state) return state.error();
   std::vector<Freed> freed;
-  for (const batch::Row& row : state->rows) {
+  for (const BatchRow& row : state->rows) {
     if (!row.is_done()) continue;
     const Result<Session> session = read_session(row.planned->session);
-    if (!session || library::current_solve(*session) != row.result->solve) continue;
-    const Result<std::vector<library::Prunable>> solves = library::prunable(row.planned->session, keep);
+    if (!session || solve::current_solve(*session) != row.result->solve) continue;
+    const Result<std::vector<Prunable>> solves = prunable(row.planned->session, keep);
     if (!solves) return solves.error();
-    for (const library::Prunable& each : *solves)
-      freed.push_back({row.planned->session, each.solve, each.bytes});
+    for (const Prunable& each : *solves) freed.push_back({row.planned->session, each.solve, each.bytes});
     if (!yes || solves->empty()) continue;
-    if (Result<void> ok = library::prune(row.planned->session, *solves); !ok) return std::move(ok).error();
+    if (Result<void> ok = prune(row.planned->session, *solves); !ok) return std::move(ok).error();
   }
   return freed;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

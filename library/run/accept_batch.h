@@ -9,7 +9,7 @@
 #include "core/base/job_context.h"
 #include "core/base/result.h"
 
-namespace weft::app {
+namespace weft::library {
 
 struct AcceptBatchOptions {
   std::filesystem::path plan;
@@ -41,4 +41,4 @@ struct Freed {
 /// among the `keep` newest (library/catalogue/prune.h). Removed only where `yes`.
 Result<std::vector<Freed>> prune_batch(const std::filesystem::path& plan, int keep, bool yes);
 
-}  // namespace weft::app
+}  // namespace weft::library

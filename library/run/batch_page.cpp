@@ -12,11 +12,10 @@
 #include "core/solve/solve.h"
 #include "solve/report/solve_report.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
-using batch::Row;
 
 constexpr std::size_t kMostRows = 200;  // of a table on the page; report.json has all
 
@@ -29,7 +28,7 @@ std::string number(const std::optional<double>& value, const char* format = "{:.
 }
 
 // As people call it, and by its session.
-std::string cloth_in(const batch::PlannedSolve& planned) {
+std::string cloth_in(const PlannedSolve& planned) {
   const std::string name = name_in(planned.session);
   return planned.fabric.empty() || planned.fabric == name ? name
                                                           : fmt::format("{}, {}", planned.fabric, name);
@@ -47,8 +46,8 @@ bool is_full(report::Section& section) {
 }
 
 report::Section done_section(const BatchState& state) {
-  const batch::Summary& s = state.summary;
-  const batch::Header& header = state.plan.header;
+  const BatchSummary& s = state.summary;
+  const BatchHeader& header = state.plan.header;
   report::Section section = {.title = "What was done"};
   const double hours = s.seconds / 3600, predicted = s.predicted_seconds / 3600;
   section.table = report::Table{
@@ -62,10 +61,10 @@ report::Section done_section(const BatchState& state) {
                {"node-hours predicted of these",
                 predicted > 0 ? fmt::format("{:.3g}, {:.2f} times what it took", predicted, s.seconds_ratio())
                               : ""},
-               {"mean error expected", error_in_words(s.error.degrees(), s.error.solved())},
-               {"mean error planned",
-                header.sampled > 0 ? error_in_words(s.predicted_error.degrees(), s.predicted_error.solved())
-                                   : "none was foretold"},
+               {"mean error expected", solve::error_in_words(s.error.degrees(), s.error.solved())},
+               {"mean error planned", header.sampled > 0 ? solve::error_in_words(s.predicted_error.degrees(),
+                                                                                 s.predicted_error.solved())
+                                                         : "none was foretold"},
                {"largest memory, MB", std::to_string(s.peak_bytes >> 20)},
                {"left out by the plan", std::to_string(header.left_out)}}};
   return section;
@@ -75,7 +74,7 @@ report::Section causes_section(const BatchState& state) {
   if (state.summary.causes.empty()) return {};
   report::Section section = {.title = "What is not solved, by cause"};
   section.table = report::Table{.header = {"cause", "kind", "sessions", "one of them"}};
-  for (const batch::Cause& cause : state.summary.causes)
+  for (const Cause& cause : state.summary.causes)
     section.table->rows.push_back({cause.what, cause.kind, std::to_string(cause.sessions), cause.example});
   return section;
 }
@@ -86,10 +85,10 @@ report::Section warned_section(const BatchState& state) {
   section.table = report::Table{.header = {"session", "solved", "expected", "warnings"}};
   for (const std::size_t index : state.summary.warned) {
     if (is_full(section)) break;
-    const batch::Outcome& outcome = *state.rows[index].result;
+    const TaskOutcome& outcome = *state.rows[index].result;
     if (outcome.solved_share() < kLeastSolved) section.table->alarms.insert(section.table->rows.size());
     section.table->rows.push_back(
-        {name_in(outcome.session), share_in_words(outcome.solved_share()),
+        {name_in(outcome.session), solve::share_in_words(outcome.solved_share()),
          outcome.expected_deg > 0 ? fmt::format("{:.3g} degrees", outcome.expected_deg) : "",
          fmt::format("{}", fmt::join(outcome.warnings, ", "))});
   }
@@ -100,7 +99,7 @@ report::Section calibrations_section(const BatchState& state) {
   report::Section section = {.title = "By calibration, the most suspect first"};
   section.table = report::Table{.header = {"calibration", "rig", "sessions", "worse", "lights do not fit",
                                            "left-out lights, % off", "turned by, degrees"}};
-  for (const batch::ByCalibration& c : state.summary.calibrations) {
+  for (const ByCalibration& c : state.summary.calibrations) {
     if (c.worse + c.warned > 0) section.table->alarms.insert(section.table->rows.size());
     section.table->rows.push_back({c.calibration.substr(0, 12), c.rig, std::to_string(c.sessions),
                                    std::to_string(c.worse), std::to_string(c.warned),
@@ -110,9 +109,9 @@ report::Section calibrations_section(const BatchState& state) {
   return section;
 }
 
-std::vector<std::string> row_of_change(const Row& row) {
-  const batch::MapChange& change = *row.result->change;
-  const auto pair = [](const std::optional<batch::BeforeAfter>& p) {
+std::vector<std::string> row_of_change(const BatchRow& row) {
+  const MapChange& change = *row.result->change;
+  const auto pair = [](const std::optional<BeforeAfter>& p) {
     return p ? fmt::format("{:.3g} → {:.3g}", p->before, p->after) : std::string();
   };
   return {cloth_in(*row.planned),
@@ -122,11 +121,11 @@ std::vector<std::string> row_of_change(const Row& row) {
           fmt::format("{:+.2f} %", 100 * change.albedo_bias_rel),
           pair(change.sigma_deg),
           fmt::format("{:.2f} → {:.2f} %", 100 * change.unsolved.before, 100 * change.unsolved.after),
-          fmt::format("{}", fmt::join(batch::regressions(change), "; "))};
+          fmt::format("{}", fmt::join(regressions(change), "; "))};
 }
 
 report::Section changes_section(const BatchState& state) {
-  const batch::Summary& s = state.summary;
+  const BatchSummary& s = state.summary;
   report::Section section = {.title = "The change from the solve before"};
   if (s.changed.empty()) {
     section.paragraphs.push_back("No session had a solve that the new one could be compared with.");
@@ -140,9 +139,8 @@ report::Section changes_section(const BatchState& state) {
   section.is_answer = true;
   for (const std::size_t index : s.changed) {
     if (is_full(section)) break;
-    const Row& row = state.rows[index];
-    if (batch::regression_weight(*row.result->change) > 0)
-      section.table->alarms.insert(section.table->rows.size());
+    const BatchRow& row = state.rows[index];
+    if (regression_weight(*row.result->change) > 0) section.table->alarms.insert(section.table->rows.size());
     section.table->rows.push_back(row_of_change(row));
   }
   return section;
@@ -152,19 +150,19 @@ report::Section left_out_section(const BatchState& state) {
   if (state.plan.left_out.empty()) return {};
   report::Section section = {.title = "Left out by the plan"};
   section.table = report::Table{.header = {"session", "why", ""}};
-  for (const batch::SkippedSession& left : state.plan.left_out) {
+  for (const SkippedSession& left : state.plan.left_out) {
     if (is_full(section)) break;
     section.table->rows.push_back(
-        {name_in(left.session), batch::kReasonNames[static_cast<std::size_t>(left.reason)], left.said});
+        {name_in(left.session), kReasonNames[static_cast<std::size_t>(left.reason)], left.said});
   }
   return section;
 }
 
 // The calibration that speaks against itself: its sessions became worse, their lights do not fit, or left-out
 // lights are off by much more than with the others.
-std::optional<Verdict> suspect(const batch::Summary& summary) {
+std::optional<Verdict> suspect(const BatchSummary& summary) {
   if (summary.calibrations.empty()) return {};
-  const batch::ByCalibration& first = summary.calibrations.front();
+  const ByCalibration& first = summary.calibrations.front();
   const bool is_worse = 2 * first.worse >= first.sessions && first.worse > 0;
   const bool is_warned = 2 * first.warned >= first.sessions && first.warned > 0;
   const bool stands_out = first.usual_left_out.has_value();
@@ -185,7 +183,7 @@ std::optional<Verdict> suspect(const batch::Summary& summary) {
 }  // namespace
 
 std::vector<Verdict> verdicts_of(const BatchState& state) {
-  const batch::Summary& s = state.summary;
+  const BatchSummary& s = state.summary;
   std::vector<Verdict> verdicts;
   if (std::optional<Verdict> calibration = suspect(s)) verdicts.push_back(std::move(*calibration));
   if (s.missing > 0)
@@ -200,7 +198,7 @@ std::vector<Verdict> verdicts_of(const BatchState& state) {
     std::vector<std::string> named;
     for (const std::size_t i : s.barely_solved)
       named.push_back(fmt::format("{} ({})", name_in(state.rows[i].planned->session),
-                                  share_in_words(state.rows[i].result->solved_share())));
+                                  solve::share_in_words(state.rows[i].result->solved_share())));
     verdicts.push_back(
         {"BARELY_SOLVED",
          fmt::format("{} solved on less than half of the cloth: {}",
@@ -219,8 +217,8 @@ std::vector<report::Section> sections_of(const BatchState& state) {
 }
 
 std::string batch_page(const BatchState& state, const std::vector<DrawnChange>& drawn) {
-  const batch::Summary& s = state.summary;
-  const batch::Header& header = state.plan.header;
+  const BatchSummary& s = state.summary;
+  const BatchHeader& header = state.plan.header;
   report::Page page = {.title = fmt::format("Batch {}", header.id),
                        .meta = {fmt::format("{}: {} of {} solved", header.archive, s.solved + s.there,
                                             sessions_in_words(header.sessions))},
@@ -236,4 +234,4 @@ std::string batch_page(const BatchState& state, const std::vector<DrawnChange>& 
   return html_of(page);
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

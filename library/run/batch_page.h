@@ -9,7 +9,7 @@
 #include "library/run/merge_batch.h"
 #include "report/page.h"
 
-namespace weft::app {
+namespace weft::library {
 
 /// What is to be said first of a batch, the gravest first: what is missing, what failed, which calibration
 /// became worse, which sessions did.
@@ -22,4 +22,4 @@ std::vector<report::Section> sections_of(const BatchState& state);
 /// One page that needs no other file.
 std::string batch_page(const BatchState& state, const std::vector<DrawnChange>& drawn);
 
-}  // namespace weft::app
+}  // namespace weft::library

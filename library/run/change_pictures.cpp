@@ -13,7 +13,7 @@
 #include "library/run/solve_change.h"
 #include "report/preview.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr int kSide = 128, kEnlarged = 2;
 
 // The window with what lies around it, inside the frame.
-Rect shown(const batch::WorstWindow& worst, Size size) {
+Rect shown(const WorstWindow& worst, Size size) {
   const int width = std::min(kSide, size.width), height = std::min(kSide, size.height);
   const int x0 = std::clamp(worst.x + worst.side / 2 - width / 2, 0, size.width - width);
   const int y0 = std::clamp(worst.y + worst.side / 2 - height / 2, 0, size.height - height);
@@ -29,7 +29,7 @@ Rect shown(const batch::WorstWindow& worst, Size size) {
 }
 
 Result<Image<float>> part_of(const fs::path& file, const std::array<std::string, 3>& channels,
-                             const batch::WorstWindow& worst) {
+                             const WorstWindow& worst) {
   const Result<MapRows> map = MapRows::open(file, channels);
   if (!map) return map.error();
   return map->read(shown(worst, map->size()));
@@ -68,8 +68,8 @@ Image<float> angles_between(const Image<float>& before, const Image<float>& afte
 
 }  // namespace
 
-Result<std::string> draw_change(const fs::path& before, const fs::path& after,
-                                const batch::PlannedSolve& planned, const batch::MapChange& change) {
+Result<std::string> draw_change(const fs::path& before, const fs::path& after, const PlannedSolve& planned,
+                                const MapChange& change) {
   const std::array<std::string, 3> xyz = {"X", "Y", "Z"}, rgb = {"R", "G", "B"};
   const Result<Image<float>> old = part_of(before / "normal.exr", xyz, change.worst);
   if (!old) return old.error();
@@ -96,4 +96,4 @@ Result<std::string> draw_change(const fs::path& before, const fs::path& after,
   return png_of(report::contact_sheet(title, panels, static_cast<int>(panels.size())));
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -8,7 +8,7 @@
 #include "library/batch/change.h"
 #include "library/batch/plan.h"
 
-namespace weft::app {
+namespace weft::library {
 
 /// A change as a picture beside a report.
 struct DrawnChange {
@@ -20,6 +20,6 @@ struct DrawnChange {
 /// The worst window of two solves side by side, as the bytes of a PNG: the old normals, the new ones, the new
 /// cloth relit, and a map of the angle between them with its scale. Errors of reading maps.
 Result<std::string> draw_change(const std::filesystem::path& before, const std::filesystem::path& after,
-                                const batch::PlannedSolve& planned, const batch::MapChange& change);
+                                const PlannedSolve& planned, const MapChange& change);
 
-}  // namespace weft::app
+}  // namespace weft::library

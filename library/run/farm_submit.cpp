@@ -14,7 +14,7 @@
 #include "core/base/temporary_folder.h"
 #include "library/run/merge_batch.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -55,13 +55,13 @@ std::optional<int> number_in_environment(const char* variable) {
   return number;
 }
 
-Result<batch::Queue> ask_for_queue(const batch::Header& header) {
-  const Result<std::string> said = ask_slurm(batch::queue_command(header));
+Result<FarmQueue> ask_for_queue(const BatchHeader& header) {
+  const Result<std::string> said = ask_slurm(queue_command(header));
   if (!said) return said.error();
-  return batch::queue_from(*said, header);
+  return queue_from(*said, header);
 }
 
-Result<void> check_farm_options(const batch::FarmOptions& options) {
+Result<void> check_farm_options(const FarmOptions& options) {
   if (options.cores >= 1 && options.at_once >= 0) return {};
   return Error{ErrorKind::kUsage, "batch cannot be submitted so", "--cores, --at-once",
                fmt::format("{} cores, {} at once", options.cores, options.at_once), "give a task one core"};
@@ -76,18 +76,18 @@ class Submission {
   }
 
   Result<SubmitReport> submit() {
-    Result<batch::Queue> queue = ask_for_queue(header_);
+    Result<FarmQueue> queue = ask_for_queue(header_);
     if (!queue) return std::move(queue).error();
     report_.queued = std::move(*queue);
     report_.missing = static_cast<int>(state_.summary.missing_tasks.size());
     jobs_ = report_.queued.jobs();
-    const std::vector<int> tasks = batch::not_queued(state_.summary.missing_tasks, report_.queued);
+    const std::vector<int> tasks = not_queued(state_.summary.missing_tasks, report_.queued);
     if (!tasks.empty()) {
       if (Result<void> ok = submit_arrays(tasks); !ok) return std::move(ok).error();
     }
     const bool has_merge = !report_.queued.merges.empty();
     if (!report_.arrays.empty() || (!jobs_.empty() && !has_merge)) {
-      SbatchCall merge = {"", {}, batch::merge_command(header_, options_.farm, places_, jobs_)};
+      SbatchCall merge = {"", {}, merge_command(header_, options_.farm, places_, jobs_)};
       if (Result<void> ok = send(merge); !ok) return std::move(ok).error();
       report_.merge = std::move(merge);
     }
@@ -100,10 +100,10 @@ class Submission {
     if (!config) return config.error();
     // Slurm does not make the folder of what a task prints.
     if (Result<void> made = make_writable_folder(state_.file.results() / kLogs); !made) return made;
-    const batch::FarmLimits limits = batch::limits_from(*config);
-    for (batch::TaskArray& array : batch::arrays_of(header_, tasks, options_.farm.cores, limits)) {
+    const FarmLimits limits = limits_from(*config);
+    for (TaskArray& array : arrays_of(header_, tasks, options_.farm.cores, limits)) {
       const std::vector<std::string> after = options_.farm.at_once > 0 ? jobs_ : std::vector<std::string>();
-      SbatchCall call = {"", array, batch::array_command(header_, array, options_.farm, places_, after)};
+      SbatchCall call = {"", array, array_command(header_, array, options_.farm, places_, after)};
       if (Result<void> ok = send(call); !ok) return ok;
       if (!call.job.empty()) jobs_.push_back(call.job);
       report_.arrays.push_back(std::move(call));
@@ -115,7 +115,7 @@ class Submission {
     if (options_.dry_run) return {};
     const Result<std::string> said = ask_slurm(call.command);
     if (!said) return said.error();
-    Result<std::string> number = batch::job_from(*said);
+    Result<std::string> number = job_from(*said);
     if (!number) return std::move(number).error();
     call.job = std::move(*number);
     return {};
@@ -123,8 +123,8 @@ class Submission {
 
   const SubmitOptions& options_;
   const BatchState state_;
-  const batch::Header& header_;
-  batch::FarmPlaces places_;
+  const BatchHeader& header_;
+  FarmPlaces places_;
   std::vector<std::string> jobs_;  // arrays that are queued
   SubmitReport report_;
 };
@@ -138,18 +138,18 @@ Result<SubmitReport> submit_batch(const SubmitOptions& options) {
   return Submission(options, std::move(*state)).submit();
 }
 
-Result<std::optional<batch::Queue>> queue_of_batch(const PlanFile& plan) {
-  if (!is_there(plan.results() / kLogs)) return std::optional<batch::Queue>();
-  Result<batch::Queue> queue = ask_for_queue(plan.header);
+Result<std::optional<FarmQueue>> queue_of_batch(const PlanFile& plan) {
+  if (!is_there(plan.results() / kLogs)) return std::optional<FarmQueue>();
+  Result<FarmQueue> queue = ask_for_queue(plan.header);
   if (queue) return std::optional(std::move(*queue));
-  if (queue.error().kind == ErrorKind::kNoInput) return std::optional<batch::Queue>();
+  if (queue.error().kind == ErrorKind::kNoInput) return std::optional<FarmQueue>();
   return std::move(queue).error();
 }
 
-Result<batch::Queue> cancel_batch(const fs::path& plan) {
+Result<FarmQueue> cancel_batch(const fs::path& plan) {
   const Result<PlanFile> file = open_plan(plan);
   if (!file) return file.error();
-  Result<batch::Queue> queue = ask_for_queue(file->header);
+  Result<FarmQueue> queue = ask_for_queue(file->header);
   if (!queue) return queue;
   std::vector<std::string> words = {"scancel"};
   for (const std::string& job : queue->jobs()) words.push_back(job);
@@ -171,10 +171,9 @@ Result<bool> requeue_own_task() {
   if (job == nullptr) return false;
   const Result<std::string> state = ask_slurm({"squeue", "--noheader", "--format=%T", "--jobs", job});
   if (!state) return state.error();
-  if (!batch::is_to_be_requeued(*state, number_in_environment("SLURM_RESTART_COUNT").value_or(0)))
-    return false;
+  if (!is_to_be_requeued(*state, number_in_environment("SLURM_RESTART_COUNT").value_or(0))) return false;
   if (const Result<std::string> said = ask_slurm({"scontrol", "requeue", job}); !said) return said.error();
   return true;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

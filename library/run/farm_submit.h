@@ -12,25 +12,25 @@
 
 // A batch on a cluster that Slurm shares out. What is done is told by the folders of solves, never by Slurm.
 
-namespace weft::app {
+namespace weft::library {
 
 struct SubmitOptions {
   std::filesystem::path plan;
-  batch::FarmOptions farm;
+  FarmOptions farm;
   bool dry_run = false;  ///< only say what would be submitted
 };
 
 struct SbatchCall {
   std::string job;                   ///< number that Slurm gave; empty where it was not called
-  batch::TaskArray array;            ///< none of the merge
+  TaskArray array;                   ///< none of the merge
   std::vector<std::string> command;  ///< sbatch and its arguments
 };
 
 struct SubmitReport {
   std::vector<SbatchCall> arrays;
   std::optional<SbatchCall> merge;
-  batch::Queue queued;  ///< before
-  int missing = 0;      ///< tasks with a session without result
+  FarmQueue queued;  ///< before
+  int missing = 0;   ///< tasks with a session without result
 };
 
 /// Submits the tasks that have a session without a result and that are not queued, as arrays, and the report
@@ -43,10 +43,10 @@ Result<SubmitReport> submit_batch(const SubmitOptions& options);
 
 /// What is queued and runs; nothing where the plan was never submitted, or this machine
 /// has no Slurm. kTryAgain where it does not answer.
-Result<std::optional<batch::Queue>> queue_of_batch(const PlanFile& plan);
+Result<std::optional<FarmQueue>> queue_of_batch(const PlanFile& plan);
 
 /// Ends what is queued and runs of a plan; how many jobs and tasks. What is solved stays. Errors as above.
-Result<batch::Queue> cancel_batch(const std::filesystem::path& plan);
+Result<FarmQueue> cancel_batch(const std::filesystem::path& plan);
 
 /// The task that Slurm started this process for, of an array whose index 0 is task `first`. kUsage outside of
 /// an array.
@@ -56,4 +56,4 @@ Result<int> task_of_array(int first);
 /// where it did. Slurm ends this process then.
 Result<bool> requeue_own_task();
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -16,7 +16,7 @@
 #include "material/run/maps.h"
 #include "solve/run/solve_session.h"
 
-namespace weft::app {
+namespace weft::library {
 
 namespace fs = std::filesystem;
 
@@ -46,47 +46,47 @@ void forget_peak_memory() {
   std::ofstream("/proc/self/clear_refs") << 5;
 }
 
-Result<FollowUpPrice> try_follow_ups(const Candidate& candidate, const batch::BatchProduct& product,
+Result<FollowUpPrice> try_follow_ups(const Candidate& candidate, const BatchProduct& product,
                                      const fs::path& aside, const JobContext& context) {
   const Result<Session> session = read_session(candidate.input.folder);
   if (!session) return session.error();
-  SessionOptions input = candidate.input;
+  solve::SessionOptions input = candidate.input;
   input.folder = aside / candidate.input.folder.filename();
   if (input.calibration.empty()) input.calibration = session->calibration_folder();
   if (Result<void> ok = link_session(candidate.input.folder, input.folder); !ok) return std::move(ok).error();
-  SolveOptions quick;
+  solve::SolveOptions quick;
   quick.method = "fast";
   quick.compression = compression_of(product);
-  const Result<SolveReport> solved = solve_session(input, quick, context);
+  const Result<solve::SolveReport> solved = solve::solve_session(input, quick, context);
   if (!solved) return solved.error();
   FollowUpPrice price = {.megapixels = candidate.traits.megapixels};
-  const std::uint64_t before = library::bytes_below(input.folder);
+  const std::uint64_t before = bytes_below(input.folder);
   forget_peak_memory();
   Stopwatch watch;
   const auto made = make_follow_ups({input.folder, solved->folder, input.calibration}, product, context);
   if (!made) return made.error();
   price.seconds = watch.lap();
   price.memory_bytes = peak_memory_bytes();
-  price.write_bytes = library::bytes_below(input.folder) - before;
+  price.write_bytes = bytes_below(input.folder) - before;
   return price;
 }
 
 }  // namespace
 
-Result<std::vector<std::string>> make_follow_ups(const SolveOfSession& of, const batch::BatchProduct& product,
+Result<std::vector<std::string>> make_follow_ups(const SolveOfSession& of, const BatchProduct& product,
                                                  const JobContext& context) {
   std::vector<std::string> made;
   fs::path maps;
   const JobContext silent = {context.threads, context.stop};
   for (const std::string& each : product.then) {
     if (each == "maps") {
-      MapsOptions options;
+      material::MapsOptions options;
       options.session = of.session;
       options.solve = of.solve.filename().string();
       options.calibration = of.calibration;
       options.compression = compression_of(product);
-      for (const DerivedMap& map : derived_maps()) options.maps.emplace_back(map.name);
-      const Result<MapsReport> report = make_maps(options, silent);
+      for (const material::DerivedMap& map : material::derived_maps()) options.maps.emplace_back(map.name);
+      const Result<material::MapsReport> report = material::make_maps(options, silent);
       if (!report) return report.error();
       maps = report->folder;
       made.push_back(maps.string());
@@ -94,13 +94,13 @@ Result<std::vector<std::string>> make_follow_ups(const SolveOfSession& of, const
     }
     const std::string preset = each.substr(each.find(':') + 1);
     const fs::path input = maps.empty() ? of.solve : maps;
-    ExportOptions options;
+    exchange::ExportOptions options;
     options.input = input;
     options.presets = {preset};
     options.output = of.session / "export" / preset / input.filename();
-    const Result<std::vector<ExportReport>> reports = export_maps(options, silent);
+    const Result<std::vector<exchange::ExportReport>> reports = exchange::export_maps(options, silent);
     if (!reports) return reports.error();
-    for (const ExportReport& report : *reports) made.push_back(report.folder.string());
+    for (const exchange::ExportReport& report : *reports) made.push_back(report.folder.string());
   }
   return made;
 }
@@ -111,18 +111,18 @@ FollowUpPrice FollowUpPrice::of(double other_megapixels) const {
   return {other_megapixels, times * seconds, scaled(memory_bytes), scaled(write_bytes)};
 }
 
-Result<FollowUpPrice> price_follow_ups(const Candidate& candidate, const batch::BatchProduct& product,
+Result<FollowUpPrice> price_follow_ups(const Candidate& candidate, const BatchProduct& product,
                                        const JobContext& context) {
   const TemporaryFolder aside;
   Result<FollowUpPrice> price = try_follow_ups(candidate, product, aside.path(), context);
   if (price) return price;
   Error error = std::move(price).error();
   const std::string copy = aside.path().string(), disk = aside.path().parent_path().string();
-  if (batch::is_of_session(error.kind) && error.where.starts_with(copy))
+  if (is_of_session(error.kind) && error.where.starts_with(copy))
     error.where = candidate.input.folder.string();
   if (error.kind == ErrorKind::kInputOutput && error.where.starts_with(disk))
     error.remedy = "point TMPDIR to a larger disk, or plan without --then";
   return error;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

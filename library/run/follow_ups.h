@@ -13,7 +13,7 @@
 
 // What a plan has made of each solve: maps and exports.
 
-namespace weft::app {
+namespace weft::library {
 
 /// A solve, where it lies, and the calibration that its session was solved by; empty: its own.
 struct SolveOfSession {
@@ -22,7 +22,7 @@ struct SolveOfSession {
 
 /// Makes what the product asks for of a solve, in its session; returns the folders. Errors of make_maps() and
 /// export_maps().
-Result<std::vector<std::string>> make_follow_ups(const SolveOfSession& of, const batch::BatchProduct& product,
+Result<std::vector<std::string>> make_follow_ups(const SolveOfSession& of, const BatchProduct& product,
                                                  const JobContext& context);
 
 /// What follow-ups take of a solve of the whole frame, whichever level made it.
@@ -38,7 +38,7 @@ struct FollowUpPrice {
 /// Makes them of a quick solve, of links to the session's files in the system's temporary folder, and takes
 /// all of it away again. Errors of solve_session() and of make_follow_ups(), in which `where` is the session
 /// and not the copy; that of a full disk names the temporary folder.
-Result<FollowUpPrice> price_follow_ups(const Candidate& candidate, const batch::BatchProduct& product,
+Result<FollowUpPrice> price_follow_ups(const Candidate& candidate, const BatchProduct& product,
                                        const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -21,7 +21,7 @@
 
 #include "core/base/files.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 constexpr int kThrew = 1;
@@ -162,4 +162,4 @@ void give_way() {
   ::syscall(SYS_ioprio_set, kThisProcess, 0, kBestEffortLast);
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -14,7 +14,7 @@
 #include "core/base/descriptor.h"
 #include "core/base/result.h"
 
-namespace weft::app {
+namespace weft::library {
 
 /// How a process of our own ended.
 struct ForkedEnd {
@@ -61,4 +61,4 @@ class ForkedWork {
 /// Has this process, and those it starts, give way to others for the processor and the disk.
 void give_way();
 
-}  // namespace weft::app
+}  // namespace weft::library

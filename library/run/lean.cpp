@@ -12,7 +12,7 @@
 #include "core/image_io/image_io.h"
 #include "core/solve/solve.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,18 +35,18 @@ Result<void> halve_normals(const fs::path& file, Compression compression) {
 
 }  // namespace
 
-std::string lean_id(const std::string& solve, const batch::BatchProduct& product) {
+std::string lean_id(const std::string& solve, const BatchProduct& product) {
   if (product.is_whole()) return solve;
   return product_id({{"solve", solve}, {"keep", sorted(product.keep)}, {"half", product.half}});
 }
 
-Compression compression_of(const batch::BatchProduct& product) {
+Compression compression_of(const BatchProduct& product) {
   const auto found = std::ranges::find(kCompressionNames, product.compression);
   return found == kCompressionNames.end() ? Compression::kNone
                                           : static_cast<Compression>(found - kCompressionNames.begin());
 }
 
-Result<void> make_lean(const fs::path& solve, const batch::BatchProduct& product, const std::string& id) {
+Result<void> make_lean(const fs::path& solve, const BatchProduct& product, const std::string& id) {
   const auto is_kept = [&](const std::string& name) {
     return product.keep.empty() || std::ranges::find(product.keep, name) != product.keep.end();
   };
@@ -73,4 +73,4 @@ Result<void> make_lean(const fs::path& solve, const batch::BatchProduct& product
   return write_json(document, *facts);
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -14,7 +14,7 @@
 #include "library/run/batch_page.h"
 #include "library/run/change_pictures.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,12 +25,12 @@ std::string picture_name(std::size_t number) {
   return fmt::format("worst-{:02}.png", number);
 }
 
-fs::path solves_of(const batch::Plan& plan, const batch::PlannedSolve& planned) {
-  return batch::solve_parent(plan.header, planned.session);
+fs::path solves_of(const BatchPlan& plan, const PlannedSolve& planned) {
+  return solve_parent(plan.header, planned.session);
 }
 
 // A solve that nobody wrote down: its process was killed in between.
-std::optional<batch::Outcome> unwritten(const batch::Plan& plan, const batch::PlannedSolve& planned) {
+std::optional<TaskOutcome> unwritten(const BatchPlan& plan, const PlannedSolve& planned) {
   const fs::path folder = solves_of(plan, planned) / planned.solve;
   const fs::path document = folder / kSolveProduct.document;
   if (!is_there(document)) return {};
@@ -38,10 +38,10 @@ std::optional<batch::Outcome> unwritten(const batch::Plan& plan, const batch::Pl
   if (!json) return {};
   const Result<SolveFacts> facts = solve_facts_from_json(*json, document.string());
   if (!facts) return {};
-  batch::Outcome outcome;
+  TaskOutcome outcome;
   outcome.plan = plan.header.id;
   outcome.session = planned.session;
-  outcome.state = batch::State::kThere;
+  outcome.state = TaskState::kThere;
   outcome.solve = planned.solve;
   outcome.folder = folder.string();
   outcome.no_change = "its process was killed before it compared them: run the same command again";
@@ -51,10 +51,10 @@ std::optional<batch::Outcome> unwritten(const batch::Plan& plan, const batch::Pl
   return outcome;
 }
 
-void hold_against_folders(const batch::Plan& plan, batch::Row& row) {
+void hold_against_folders(const BatchPlan& plan, BatchRow& row) {
   if (row.is_done() && !row.result->is_stored &&
       !is_there(fs::path(row.result->folder) / kSolveProduct.document)) {
-    row.lost = batch::Outcome{};
+    row.lost = TaskOutcome{};
     row.lost->error = {ErrorKind::kTryAgain, "its solve is gone", row.result->folder, "somebody removed it",
                        "run the same command again"};
     row.result.reset();
@@ -70,7 +70,7 @@ Result<void> write_pictures(const BatchState& state, const fs::path& folder, std
   }
   for (const std::size_t index : state.summary.changed) {
     if (drawn.size() == kMostDrawn || context.stop.stop_requested()) break;
-    const batch::Row& row = state.rows[index];
+    const BatchRow& row = state.rows[index];
     if (row.result->change->is_none() || row.result->is_stored) continue;
     const fs::path before = fs::path(row.planned->session) / "solve" / row.planned->before;
     Result<std::string> png = draw_change(before, row.result->folder, *row.planned, *row.result->change);
@@ -92,9 +92,9 @@ void describe(Fields& fields, ListedPicture& p) {
 }
 
 void describe(Fields& fields, ListedLeftOut& l) {
-  batch::SkippedSession& of = l.left_out;
+  SkippedSession& of = l.left_out;
   fields.value({"session", "Its folder", {}, kMustSay}, of.session);
-  fields.choice({"left_out", "Why it is not solved", {}, kMustSay}, of.reason, batch::kReasonNames);
+  fields.choice({"left_out", "Why it is not solved", {}, kMustSay}, of.reason, kReasonNames);
   fields.value({"said", "One sentence"}, of.said);
   fields.value({"seconds", "That are saved"}, of.seconds);
 }
@@ -110,16 +110,16 @@ void describe(Fields& fields, BatchReportFacts& f) {
 Result<BatchState> read_batch(const fs::path& plan_file) {
   Result<PlanFile> file = open_plan(plan_file);
   if (!file) return std::move(file).error();
-  Result<batch::Plan> plan = read_plan(plan_file);
+  Result<BatchPlan> plan = read_plan(plan_file);
   if (!plan) return std::move(plan).error();
-  const Result<std::map<std::string, batch::History>> histories = read_histories(*file, {});
+  const Result<std::map<std::string, TaskHistory>> histories = read_histories(*file, {});
   if (!histories) return histories.error();
   BatchState state;
   state.file = std::move(*file);
   state.plan = std::move(*plan);
-  state.rows = batch::rows_of(state.plan, *histories);
-  for (batch::Row& row : state.rows) hold_against_folders(state.plan, row);
-  state.summary = batch::summarize(state.rows);
+  state.rows = rows_of(state.plan, *histories);
+  for (BatchRow& row : state.rows) hold_against_folders(state.plan, row);
+  state.summary = summarize(state.rows);
   return state;
 }
 
@@ -127,7 +127,7 @@ Result<MergeReport> merge_batch(const fs::path& plan, const JobContext& context)
   Result<BatchState> state = read_batch(plan);
   if (!state) return std::move(state).error();
   MergeReport report;
-  for (const batch::Row& row : state->rows)
+  for (const BatchRow& row : state->rows)
     report.abandoned +=
         remove_folders(abandoned_of(row.planned->session, solves_of(state->plan, *row.planned)));
   report.folder = state->file.results() / "report";
@@ -136,7 +136,7 @@ Result<MergeReport> merge_batch(const fs::path& plan, const JobContext& context)
   if (Result<void> ok = write_pictures(*state, report.folder, drawn, context); !ok)
     return std::move(ok).error();
   BatchReportFacts facts = {state->plan.header.id, {state->summary, state->rows}, {}, {}, report.abandoned};
-  for (const batch::SkippedSession& left : state->plan.left_out) facts.left_out.push_back({left});
+  for (const SkippedSession& left : state->plan.left_out) facts.left_out.push_back({left});
   for (const DrawnChange& each : drawn) facts.pictures.push_back({each.session, each.file});
   Json document = {{"schema", kReportSchema}};
   write_fields(document, std::move(facts));
@@ -148,4 +148,4 @@ Result<MergeReport> merge_batch(const fs::path& plan, const JobContext& context)
   return report;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -11,14 +11,14 @@
 #include "library/batch/summary.h"
 #include "library/run/plan_file.h"
 
-namespace weft::app {
+namespace weft::library {
 
 /// A plan and what its tasks have made of it so far.
 struct BatchState {
   PlanFile file;
-  batch::Plan plan;
-  std::vector<batch::Row> rows;  ///< of plan.solves
-  batch::Summary summary;
+  BatchPlan plan;
+  std::vector<BatchRow> rows;  ///< of plan.solves
+  BatchSummary summary;
 
   BatchState() = default;
   BatchState(BatchState&&) = default;  // rows point into the plan's list, which moves as it is
@@ -46,13 +46,13 @@ void describe(Fields& fields, ListedPicture& picture);
 
 /// A session that was not solved, as the report lists it.
 struct ListedLeftOut {
-  batch::SkippedSession left_out;
+  SkippedSession left_out;
 };
 
 /// What report.json says of a batch (weft.batch-report/1.1).
 struct BatchReportFacts {
   std::string plan;  ///< id
-  batch::SummaryDocument summary;
+  SummaryDocument summary;
   std::vector<ListedLeftOut> left_out;
   std::vector<ListedPicture> pictures;
   int abandoned = 0;
@@ -67,4 +67,4 @@ inline constexpr std::size_t kMostDrawn = 10;
 /// of read_batch(); kCannotCreate, kInputOutput.
 Result<MergeReport> merge_batch(const std::filesystem::path& plan, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -11,7 +11,7 @@
 #include "core/solve/solve.h"
 #include "library/batch/farm.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,9 +40,9 @@ std::string filled(const std::string& command, const std::string& src, const std
   std::string text;
   for (std::size_t i = 0; i < command.size();) {
     if (command.compare(i, 5, "{src}") == 0) {
-      text += batch::shell_word(src), i += 5;
+      text += shell_word(src), i += 5;
     } else if (command.compare(i, 5, "{dst}") == 0) {
-      text += batch::shell_word(dst), i += 5;
+      text += shell_word(dst), i += 5;
     } else {
       text += command[i++];
     }
@@ -74,4 +74,4 @@ std::string store_outside(const std::string& command, const fs::path& solve, con
   return run_outside(command, (solve / kSolveProduct.document).string(), dst + "/" + kSolveProduct.document);
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

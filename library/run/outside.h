@@ -6,7 +6,7 @@
 
 // Commands of the user that bring sessions and take solves away.
 
-namespace weft::app {
+namespace weft::library {
 
 /// The command with {src} and {dst} in place, quoted for a shell.
 std::string filled(const std::string& command, const std::string& src, const std::string& dst);
@@ -19,4 +19,4 @@ std::string run_outside(const std::string& command, const std::string& src, cons
 std::string store_outside(const std::string& command, const std::filesystem::path& solve,
                           const std::string& dst);
 
-}  // namespace weft::app
+}  // namespace weft::library

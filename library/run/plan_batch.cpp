@@ -25,11 +25,10 @@
 #include "solve/report/solve_report.h"
 #include "solver/method.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
-using batch::Forecast;
 
 // The folder that holds all of them.
 fs::path archive_of(const std::vector<fs::path>& sessions) {
@@ -74,8 +73,8 @@ class Planning {
     plan_.header.sample_seconds = watch.lap();
     if (Result<void> ok = decide(); !ok) return std::move(ok).error();
     add_totals();
-    batch::share_out(plan_.solves, 60 * options_.task_minutes);
-    const std::string text = batch::text_of(plan_);
+    share_out(plan_.solves, 60 * options_.task_minutes);
+    const std::string text = text_of(plan_);
     if (const Result<void> written = write_plan(options_.plan, text); !written) return written.error();
     seconds += watch.lap();
     return PlanBatchReport{std::move(plan_), absolute_folder(options_.plan), seconds};
@@ -90,9 +89,9 @@ class Planning {
                    options_.sessions.empty() ? "" : options_.sessions.front(), "no session lies there",
                    "name folders of sessions, or folders that hold some"};
     }
-    Result<std::vector<batch::NamedCalibration>> named = read_named(options_.calibrations);
+    Result<std::vector<NamedCalibration>> named = read_named(options_.calibrations);
     if (!named) return std::move(named).error();
-    batch::Header& header = plan_.header;
+    BatchHeader& header = plan_.header;
     header.archive = archive_of(*sessions).string();
     header.output = options_.output.empty() ? "" : absolute_folder(options_.output).string();
     header.product = options_.product;
@@ -113,7 +112,7 @@ class Planning {
 
   // A calibration that no session is of is named by mistake.
   Result<void> check_named() const {
-    for (const batch::NamedCalibration& named : plan_.header.calibrations) {
+    for (const NamedCalibration& named : plan_.header.calibrations) {
       const bool is_used = std::ranges::any_of(
           candidates_, [&](const Candidate& each) { return each.traits.calibration == named.id; });
       if (is_used) continue;
@@ -126,13 +125,13 @@ class Planning {
   }
 
   void leave_out(const Candidate& candidate, const Error& error) {
-    plan_.left_out.push_back({candidate.input.folder.string(), batch::Reason::kUnsolvable,
-                              name_of(error.kind), error.message(), 0});
+    plan_.left_out.push_back(
+        {candidate.input.folder.string(), SkipReason::kUnsolvable, name_of(error.kind), error.message(), 0});
   }
 
   // Sessions that would be solved, whatever the level, are worth measuring.
   Result<void> measure() {
-    std::vector<batch::Traits> traits, open;
+    std::vector<SessionTraits> traits, open;
     std::vector<std::size_t> of_open;
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       traits.push_back(candidates_[i].traits);
@@ -140,12 +139,11 @@ class Planning {
       open.push_back(candidates_[i].traits);
       of_open.push_back(i);
     }
-    std::vector<batch::Measured> measured;
-    std::vector<std::size_t> unfit,
-        sample = batch::choose_sample(open, static_cast<std::size_t>(options_.sample));
+    std::vector<MeasuredSession> measured;
+    std::vector<std::size_t> unfit, sample = choose_sample(open, static_cast<std::size_t>(options_.sample));
     for (std::size_t& each : sample) each = of_open[each];
     const JobContext silent = {context_.threads, context_.stop};
-    std::optional<SharedSeconds> shared;
+    std::optional<solve::SharedSeconds> shared;
     const std::optional<solver::Level> only =
         is_fixed() ? solver::find_method(level_names()[levels_.front()])->level : std::nullopt;
     for (std::size_t k = 0; k < sample.size(); ++k) {
@@ -167,7 +165,7 @@ class Planning {
     if (!sample.empty()) context_.progress("measure", 1);
     if (follow_ups_.empty() && refused_) return *refused_;
     plan_.header.sampled = static_cast<int>(measured.size());
-    forecasts_ = batch::carry_over(traits, measured);
+    forecasts_ = carry_over(traits, measured);
     if (forecasts_.empty()) forecasts_.assign(candidates_.size(), std::vector<Forecast>(levels_.size()));
     for (auto i = unfit.rbegin(); i != unfit.rend(); ++i) {
       candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(*i));
@@ -194,7 +192,7 @@ class Planning {
     }
     refused_ = std::move(price).error();
     const bool is_of_all = ++refusals_ == kMostRefusals && follow_ups_.empty();
-    if (is_of_all || !batch::is_of_session(refused_->kind)) return *refused_;
+    if (is_of_all || !is_of_session(refused_->kind)) return *refused_;
     return {};
   }
 
@@ -246,8 +244,8 @@ class Planning {
   std::size_t first_level() const { return is_fixed() || options_.product.then.empty() ? 0 : 1; }
 
   // From the first level on that may be chosen.
-  std::vector<batch::LevelOption> options_of(std::size_t i) const {
-    std::vector<batch::LevelOption> options;
+  std::vector<LevelOption> options_of(std::size_t i) const {
+    std::vector<LevelOption> options;
     for (std::size_t l = first_level(); l < forecasts_[i].size(); ++l) {
       const Forecast& forecast = forecasts_[i][l];
       options.push_back(
@@ -272,27 +270,27 @@ class Planning {
         take(i, 0);
         continue;
       }
-      const std::vector<batch::LevelOption> options = options_of(i);
-      const std::optional<std::size_t> level = batch::cheapest_within(options, *options_.to_deg);
+      const std::vector<LevelOption> options = options_of(i);
+      const std::optional<std::size_t> level = cheapest_within(options, *options_.to_deg);
       if (level) {
         take(i, first_level() + *level);
         continue;
       }
-      const auto closest = std::ranges::min_element(options, {}, &batch::LevelOption::degrees);
+      const auto closest = std::ranges::min_element(options, {}, &LevelOption::degrees);
       const auto closest_level = first_level() + static_cast<std::size_t>(closest - options.begin());
       const Forecast& forecast = forecasts_[i][closest_level];
-      plan_.left_out.push_back({candidates_[i].input.folder.string(), batch::Reason::kNotGoodEnough, "",
+      plan_.left_out.push_back({candidates_[i].input.folder.string(), SkipReason::kNotGoodEnough, "",
                                 fmt::format("the closest level, {}: {}", names[levels_[closest_level]],
-                                            error_in_words(forecast.degrees, forecast.solved)),
+                                            solve::error_in_words(forecast.degrees, forecast.solved)),
                                 closest->seconds});
     }
     return {};
   }
 
   Result<void> decide_by_hours() {
-    std::vector<std::vector<batch::LevelOption>> options;
+    std::vector<std::vector<LevelOption>> options;
     for (std::size_t i = 0; i < candidates_.size(); ++i) options.push_back(options_of(i));
-    const Result<batch::Spending> spending = batch::spend(options, *options_.within_seconds);
+    const Result<Spending> spending = spend(options, *options_.within_seconds);
     if (!spending) return spending.error();
     plan_.header.curve = spending->curve;
     for (std::size_t i = 0; i < candidates_.size(); ++i) take(i, first_level() + spending->chosen[i]);
@@ -306,18 +304,18 @@ class Planning {
     const std::string session = candidate.input.folder.string();
     const LevelOfSession& of_level = level_of(i, level);
     if (of_level.is_there) {
-      plan_.left_out.push_back({session, batch::Reason::kThere, "",
+      plan_.left_out.push_back({session, SkipReason::kThere, "",
                                 fmt::format("solve {} is there", of_level.solve), forecast.seconds});
       return;
     }
     if (turns_little(forecast)) {
-      plan_.left_out.push_back({session, batch::Reason::kTurnsLittle, "",
+      plan_.left_out.push_back({session, SkipReason::kTurnsLittle, "",
                                 fmt::format("its maps would turn by {:.3g} degrees{}", *forecast.turn_deg,
                                             forecast.is_measured ? "" : ", as those of others solved alike"),
                                 forecast.seconds});
       return;
     }
-    batch::PlannedSolve planned;
+    PlannedSolve planned;
     planned.session = session;
     planned.digest = candidate.digest;
     planned.quality = level_names()[levels_[level]];
@@ -339,9 +337,9 @@ class Planning {
   void add_totals() {
     const std::vector<std::string> names = level_names();
     for (std::size_t l = 0; l < levels_.size(); ++l) {
-      batch::LevelTotal total;
+      LevelTotal total;
       total.quality = names[levels_[l]];
-      batch::MeanError error, squares;
+      MeanError error, squares;
       for (const std::vector<Forecast>& levels : forecasts_) {
         total.hours += levels[l].seconds / 3600;
         error.add(levels[l].degrees, levels[l].solved);
@@ -351,7 +349,7 @@ class Planning {
       total.solved = error.solved();
       total.spread_deg = std::sqrt(std::max(0.0, squares.degrees() - total.mean_deg * total.mean_deg));
       total.sessions =
-          static_cast<int>(std::ranges::count(plan_.solves, total.quality, &batch::PlannedSolve::quality));
+          static_cast<int>(std::ranges::count(plan_.solves, total.quality, &PlannedSolve::quality));
       plan_.header.levels.push_back(total);
     }
   }
@@ -359,7 +357,7 @@ class Planning {
   const PlanBatchOptions& options_;
   const JobContext& context_;
   const std::vector<std::size_t> levels_;  // of level_names(), what `level` is an index into
-  batch::Plan plan_;
+  BatchPlan plan_;
   std::vector<Candidate> candidates_;
   std::vector<std::vector<Forecast>> forecasts_;
   std::vector<FollowUpPrice> follow_ups_;  // of sizes that differ
@@ -378,7 +376,8 @@ Result<void> check_plan_options(const PlanBatchOptions& options) {
     return refused("--then", "maps and exports are made in the session", "plan without --output");
   for (const std::string& each : options.product.then) {
     if (!each.starts_with("export:")) continue;
-    if (auto preset = read_preset(each.substr(each.find(':') + 1)); !preset) return std::move(preset).error();
+    if (auto preset = exchange::read_preset(each.substr(each.find(':') + 1)); !preset)
+      return std::move(preset).error();
   }
   const auto keeps = [&](const char* name) {
     return options.product.keep.empty() ||
@@ -461,4 +460,4 @@ Result<PlanBatchReport> plan_batch(const PlanBatchOptions& options, const JobCon
   return Planning(options, std::move(*levels), context).plan();
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -11,7 +11,7 @@
 #include "core/describe/fields.h"
 #include "library/batch/plan.h"
 
-namespace weft::app {
+namespace weft::library {
 
 struct PlanBatchOptions {
   std::vector<std::string> sessions;            ///< folders of sessions, or with sessions below them
@@ -19,7 +19,7 @@ struct PlanBatchOptions {
   std::optional<double> to_deg = {};            ///< of each session the cheapest level that is so close
   std::optional<double> within_seconds = {};    ///< for all: spent where a second buys most degrees
   std::optional<double> least_change_deg = {};  ///< maps that would turn by less are left as they are
-  batch::BatchProduct product;
+  BatchProduct product;
   /// In place of the own ones of the sessions of their rigs.
   std::vector<std::filesystem::path> calibrations;
   int sample = 50;           ///< sessions that are measured
@@ -34,7 +34,7 @@ void describe(Fields& fields, PlanBatchOptions& options);
 void describe_kept_maps(Fields& fields, std::vector<std::string>& keep, bool& half);
 
 struct PlanBatchReport {
-  batch::Plan plan;
+  BatchPlan plan;
   std::filesystem::path file;
   double seconds = 0;  ///< of planning, the sample not among them
 };
@@ -49,4 +49,4 @@ struct PlanBatchReport {
 /// kInterrupted.
 Result<PlanBatchReport> plan_batch(const PlanBatchOptions& options, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::library

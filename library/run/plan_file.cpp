@@ -13,7 +13,7 @@
 #include "core/base/descriptor.h"
 #include "core/base/files.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,12 +68,12 @@ fs::path PlanFile::results_of(int task) const {
 Result<PlanFile> open_plan(const fs::path& file) {
   Result<std::string> line = first_line(file);
   if (!line) return std::move(line).error();
-  Result<batch::Header> header = batch::header_from_line(*line, file.string());
+  Result<BatchHeader> header = header_from_line(*line, file.string());
   if (!header) return std::move(header).error();
   return PlanFile{absolute_folder(file), std::move(*header), line->size() + 1};
 }
 
-Result<std::vector<batch::PlannedSolve>> read_task(const PlanFile& plan, int task) {
+Result<std::vector<PlannedSolve>> read_task(const PlanFile& plan, int task) {
   const auto& tasks = plan.header.tasks;
   if (task < 0 || static_cast<std::size_t>(task) >= tasks.size()) {
     return Error{ErrorKind::kUsage, "no such task", fmt::format("--task {}", task),
@@ -81,24 +81,24 @@ Result<std::vector<batch::PlannedSolve>> read_task(const PlanFile& plan, int tas
                                : fmt::format("{} has 0 to {}", plan.file.string(), tasks.size() - 1),
                  "name one of them"};
   }
-  const batch::TaskPlace& place = tasks[static_cast<std::size_t>(task)];
+  const TaskPlace& place = tasks[static_cast<std::size_t>(task)];
   const Result<std::string> lines = read_part(plan.file, plan.lines_at + place.offset, place.bytes);
   if (!lines) return lines.error();
-  Result<std::vector<batch::PlannedSolve>> solves = batch::solves_from_lines(*lines, plan.file.string());
+  Result<std::vector<PlannedSolve>> solves = solves_from_lines(*lines, plan.file.string());
   if (!solves) return solves;
   const bool fits =
       static_cast<int>(solves->size()) == place.sessions &&
-      std::ranges::all_of(*solves, [&](const batch::PlannedSolve& planned) { return planned.task == task; });
+      std::ranges::all_of(*solves, [&](const PlannedSolve& planned) { return planned.task == task; });
   if (fits) return solves;
   return Error{ErrorKind::kBadData, "plan cannot be used", plan.file.string(),
                fmt::format("its lines of task {} are not where its first line says", task),
                "make it again with weft batch plan"};
 }
 
-Result<batch::Plan> read_plan(const fs::path& file) {
+Result<BatchPlan> read_plan(const fs::path& file) {
   const Result<std::string> text = read_text(file, kLargestPlan);
   if (!text) return text.error();
-  return batch::plan_from_text(*text, file.string());
+  return plan_from_text(*text, file.string());
 }
 
 Result<void> write_plan(const fs::path& file, const std::string& text) {
@@ -115,12 +115,12 @@ Result<void> write_plan(const fs::path& file, const std::string& text) {
   return write_file(file, text);
 }
 
-Result<std::map<std::string, batch::History>> read_histories(const PlanFile& plan,
-                                                             const std::vector<int>& tasks) {
+Result<std::map<std::string, TaskHistory>> read_histories(const PlanFile& plan,
+                                                          const std::vector<int>& tasks) {
   std::vector<int> all = tasks;
   for (int task = 0; tasks.empty() && task < static_cast<int>(plan.header.tasks.size()); ++task)
     all.push_back(task);
-  std::map<std::string, batch::History> histories;
+  std::map<std::string, TaskHistory> histories;
   for (const int task : all) {
     const fs::path file = plan.results_of(task);
     const Result<bool> there = look_for(file);
@@ -128,12 +128,12 @@ Result<std::map<std::string, batch::History>> read_histories(const PlanFile& pla
     if (!*there) continue;
     const Result<std::string> lines = read_text(file, kLargestPlan);
     if (!lines) return lines.error();
-    batch::add_histories(*lines, plan.header.id, histories);
+    add_histories(*lines, plan.header.id, histories);
   }
   return histories;
 }
 
-Result<void> add_outcome(const PlanFile& plan, int task, const batch::Outcome& outcome) {
+Result<void> add_outcome(const PlanFile& plan, int task, const TaskOutcome& outcome) {
   const fs::path file = plan.results_of(task);
   const Descriptor out(file, O_RDWR | O_APPEND | O_CREAT);
   if (!out) return cannot_write(file, errno);
@@ -141,7 +141,7 @@ Result<void> add_outcome(const PlanFile& plan, int task, const batch::Outcome& o
   char last = '\n';
   if (end > 0 && ::pread(out.get(), &last, 1, end - 1) != 1) return cannot_write(file, errno);
   std::string line = last == '\n' ? "" : "\n";
-  line += batch::line_of(outcome);
+  line += line_of(outcome);
   // One call, so that lines of two processes do not mix.
   const ssize_t written = ::write(out.get(), line.data(), line.size());
   if (written != static_cast<ssize_t>(line.size())) return cannot_write(file, written < 0 ? errno : ENOSPC);
@@ -149,4 +149,4 @@ Result<void> add_outcome(const PlanFile& plan, int task, const batch::Outcome& o
   return {};
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -26,7 +26,7 @@
 #include "library/run/plan_file.h"
 #include "library/run/session_work.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -49,13 +49,13 @@ struct Active {
 
 // A session under way.
 struct Item {
-  batch::PlannedSolve planned;
+  PlannedSolve planned;
   int attempt = 1;
   bool is_here = false;  // it can be solved
   bool is_read_ahead = false;
   bool is_over = false;
   fs::path fetched;  // its folder; empty: where it was planned
-  std::optional<batch::Outcome> solved;
+  std::optional<TaskOutcome> solved;
 };
 
 // Reads files so that the system keeps them in memory.
@@ -116,8 +116,8 @@ class BatchRun {
   }
 
   // Whether a result of before still holds.
-  bool holds(const batch::Outcome& result) const {
-    if (result.state == batch::State::kFailed) return !options_.retry_failed;
+  bool holds(const TaskOutcome& result) const {
+    if (result.state == TaskState::kFailed) return !options_.retry_failed;
     return result.is_stored || is_there(fs::path(result.folder) / kSolveProduct.document);
   }
 
@@ -127,21 +127,21 @@ class BatchRun {
     for (int task = 0; !options_.task && task < static_cast<int>(plan_.header.tasks.size()); ++task)
       tasks.push_back(task);
     if (tasks.empty()) return {};
-    const Result<std::map<std::string, batch::History>> histories = read_histories(plan_, tasks);
+    const Result<std::map<std::string, TaskHistory>> histories = read_histories(plan_, tasks);
     if (!histories) return histories.error();
     for (const int task : tasks) {
-      Result<std::vector<batch::PlannedSolve>> solves = read_task(plan_, task);
+      Result<std::vector<PlannedSolve>> solves = read_task(plan_, task);
       if (!solves) return std::move(solves).error();
-      for (batch::PlannedSolve& planned : *solves) add_item(std::move(planned), *histories);
+      for (PlannedSolve& planned : *solves) add_item(std::move(planned), *histories);
     }
     return {};
   }
 
-  void add_item(batch::PlannedSolve planned, const std::map<std::string, batch::History>& histories) {
+  void add_item(PlannedSolve planned, const std::map<std::string, TaskHistory>& histories) {
     Item item;
     const auto found = histories.find(planned.session);
     if (found != histories.end()) {
-      const batch::History& history = found->second;
+      const TaskHistory& history = found->second;
       item.attempt = history.attempts + 1;
       if (history.result && holds(*history.result)) {
         if (history.result->is_done()) {
@@ -224,8 +224,8 @@ class BatchRun {
     work.product = product_;
     work.session = folder_of(item);
     const bool is_fetched = !item.fetched.empty() && plan_.header.output.empty();
-    work.solves = is_fetched ? item.fetched / "solve"
-                             : fs::path(batch::solve_parent(plan_.header, item.planned.session));
+    work.solves =
+        is_fetched ? item.fetched / "solve" : fs::path(solve_parent(plan_.header, item.planned.session));
     return work;
   }
 
@@ -241,11 +241,10 @@ class BatchRun {
       };
     } else if (stage == Stage::kSolve) {
       work = [this, &item](const std::stop_token& stop) {
-        return batch::line_of(work_on_session(work_of(item), {threads(), stop}));
+        return line_of(work_on_session(work_of(item), {threads(), stop}));
       };
     } else if (stage == Stage::kStore) {
-      const std::string to =
-          batch::solve_parent(plan_.header, item.planned.session) + "/" + item.solved->solve;
+      const std::string to = solve_parent(plan_.header, item.planned.session) + "/" + item.solved->solve;
       work = [this, &item, to](const std::stop_token&) {
         return store_outside(options_.store, item.solved->folder, to);
       };
@@ -287,9 +286,9 @@ class BatchRun {
         return take_solved(over, std::move(end));
       case Stage::kStore: {
         if (end.signal == 0 && end.code == 0 && end.said.empty()) {
-          batch::Outcome outcome = std::move(*item.solved);
+          TaskOutcome outcome = std::move(*item.solved);
           outcome.is_stored = true;
-          outcome.folder = batch::solve_parent(plan_.header, item.planned.session) + "/" + outcome.solve;
+          outcome.folder = solve_parent(plan_.header, item.planned.session) + "/" + outcome.solve;
           return finish(over.item, std::move(outcome));
         }
         return finish(over.item, ended_by(work_of(item), cannot_be(end, "solve cannot be stored", item)));
@@ -306,8 +305,8 @@ class BatchRun {
 
   Result<void> take_solved(const Active& over, ForkedEnd end) {
     Item& item = items_[over.item];
-    std::optional<batch::Outcome> outcome;
-    if (end.signal == 0 && end.code == 0) outcome = batch::outcome_from_line(end.said);
+    std::optional<TaskOutcome> outcome;
+    if (end.signal == 0 && end.code == 0) outcome = outcome_from_line(end.said);
     if (!outcome) outcome = ended_by(work_of(item), why_it_ended(end, item));
     outcome->peak_bytes = end.peak_bytes;
     if (outcome->seconds == 0)
@@ -338,7 +337,7 @@ class BatchRun {
   }
 
   // Writes down what became of a session.
-  Result<void> finish(std::size_t index, batch::Outcome outcome) {
+  Result<void> finish(std::size_t index, TaskOutcome outcome) {
     Item& item = items_[index];
     outcome.attempt = item.attempt;
     outcome.host = machine_name();
@@ -350,7 +349,7 @@ class BatchRun {
     }
     ++done_;
     seconds_to_do_ -= item.planned.forecast.seconds;
-    if (outcome.state == batch::State::kSolved) {
+    if (outcome.state == TaskState::kSolved) {
       seconds_taken_ += outcome.node_seconds;
       seconds_foreseen_ += item.planned.forecast.seconds;
     }
@@ -377,20 +376,20 @@ class BatchRun {
     return seconds * share / 3600;
   }
 
-  void tally(const batch::Outcome& outcome) {
+  void tally(const TaskOutcome& outcome) {
     const ErrorKind kind = outcome.error ? outcome.error->kind : ErrorKind::kTryAgain;
     switch (outcome.state) {
-      case batch::State::kSolved:
+      case TaskState::kSolved:
         ++report_.solved;
         break;
-      case batch::State::kThere:
+      case TaskState::kThere:
         ++report_.there;
         break;
-      case batch::State::kFailed:
+      case TaskState::kFailed:
         ++report_.failed;
         report_.failures.push_back(kind);
         break;
-      case batch::State::kLost:
+      case TaskState::kLost:
         ++report_.lost;
         report_.losses.push_back(kind);
         break;
@@ -415,7 +414,7 @@ class BatchRun {
   const PlanFile plan_;
   const JobContext& context_;
   const AfterSession& after_;
-  batch::BatchProduct product_;
+  BatchProduct product_;
   fs::path scratch_;
   std::vector<Item> items_;
   std::vector<Active> active_;
@@ -426,7 +425,7 @@ class BatchRun {
   RunBatchReport report_;
 };
 
-Result<void> check_options(const RunBatchOptions& options, const batch::Header& header) {
+Result<void> check_options(const RunBatchOptions& options, const BatchHeader& header) {
   const auto refused = [](const char* where, const char* why, const char* remedy) {
     return Error{ErrorKind::kUsage, "batch cannot be run so", where, why, remedy};
   };
@@ -516,4 +515,4 @@ Result<RunBatchReport> run_batch(const RunBatchOptions& options, const JobContex
   return BatchRun(options, std::move(*plan), context, after).run();
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

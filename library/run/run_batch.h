@@ -13,7 +13,7 @@
 #include "core/describe/fields.h"
 #include "library/batch/outcome.h"
 
-namespace weft::app {
+namespace weft::library {
 
 struct RunBatchOptions {
   std::filesystem::path plan;
@@ -50,7 +50,7 @@ struct RunBatchReport {
 };
 
 /// Called after each session, with the hours that are still to come.
-using AfterSession = std::function<void(const batch::Outcome& outcome, double hours_left)>;
+using AfterSession = std::function<void(const TaskOutcome& outcome, double hours_left)>;
 
 /// Solves the sessions of a plan, or of one of its tasks, that have no result yet, each in a process of its
 /// own (forked_work.h): a session that runs out of memory, crashes or is killed is lost alone, is no result,
@@ -64,4 +64,4 @@ using AfterSession = std::function<void(const batch::Outcome& outcome, double ho
 Result<RunBatchReport> run_batch(const RunBatchOptions& options, const JobContext& context,
                                  const AfterSession& after);
 
-}  // namespace weft::app
+}  // namespace weft::library

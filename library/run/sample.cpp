@@ -16,7 +16,7 @@
 #include "library/run/solve_change.h"
 #include "solve/run/explain.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -52,13 +52,13 @@ std::optional<double> turn_in_the_middle(const fs::path& cut_file, const fs::pat
 
 }  // namespace
 
-Result<std::vector<batch::Forecast>> measure_session(const Candidate& candidate, const SampleOptions& options,
-                                                     const JobContext& context) {
+Result<std::vector<Forecast>> measure_session(const Candidate& candidate, const SampleOptions& options,
+                                              const JobContext& context) {
   const TemporaryFolder crops;
-  SolveOptions solve;
+  solve::SolveOptions solve;
   solve.compression = compression_of(options.product);
-  const PriceOptions wanted = {.only = options.only, .crops = crops.path(), .shared = &options.shared};
-  const Result<Ladder> ladder = explain_session(candidate.input, solve, wanted, context);
+  const solve::PriceOptions wanted = {.only = options.only, .crops = crops.path(), .shared = &options.shared};
+  const Result<solve::Ladder> ladder = solve::explain_session(candidate.input, solve, wanted, context);
   if (!ladder) return ladder.error();
   const fs::path before = candidate.input.folder / "solve" / candidate.before;
   double compare_s = 0;
@@ -66,13 +66,13 @@ Result<std::vector<batch::Forecast>> measure_session(const Candidate& candidate,
     Stopwatch watch;
     if (compare_solves(before, before, context.threads)) compare_s = watch.lap();
   }
-  std::vector<batch::Forecast> levels;
-  for (const LevelPrice& price : ladder->levels) {
-    batch::Forecast level;
+  std::vector<Forecast> levels;
+  for (const solve::LevelPrice& price : ladder->levels) {
+    Forecast level;
     level.seconds = price.seconds.total();
     level.degrees = price.error.total_deg;
     level.solved = price.error.solved;
-    level.solve_seconds = price_of(price).seconds;
+    level.solve_seconds = solve::price_of(price).seconds;
     const bool is_half = price.level == solver::Level::kPreview;
     if (!candidate.before.empty() && !is_half) {
       level.seconds += compare_s;
@@ -84,4 +84,4 @@ Result<std::vector<batch::Forecast>> measure_session(const Candidate& candidate,
   return levels;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

@@ -15,7 +15,7 @@
 #include "library/run/solve_change.h"
 #include "solve/run/solve_session.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,12 +33,12 @@ Result<fs::path> check_session(const SessionWork& work) {
   }
   const Result<Session> session = read_session(folder);
   if (!session) return session.error();
-  if (batch::digest_of_session(session->document) != work.planned.digest) {
+  if (digest_of_session(session->document) != work.planned.digest) {
     return Error{ErrorKind::kBadData, "session was changed since the plan", folder.string(),
                  "its session.json differs in what a solve depends on", "plan again"};
   }
   const auto& named = work.header->calibrations;
-  const auto found = std::ranges::find(named, work.planned.calibration, &batch::NamedCalibration::id);
+  const auto found = std::ranges::find(named, work.planned.calibration, &NamedCalibration::id);
   const fs::path own = found == named.end() ? fs::path() : fs::path(found->folder);
   const fs::path used = own.empty() ? session->calibration_folder() : own;
   const Result<Calibration> calibration = read_calibration(used);
@@ -51,29 +51,29 @@ Result<fs::path> check_session(const SessionWork& work) {
 }
 
 // The whole solve, where it belongs.
-Result<SolveReport> solve_whole(const SessionOptions& input, SolveOptions options, const SessionWork& work,
-                                const JobContext& context) {
+Result<solve::SolveReport> solve_whole(const solve::SessionOptions& input, solve::SolveOptions options,
+                                       const SessionWork& work, const JobContext& context) {
   options.output = work.solves / work.planned.solve;
-  Result<SolveReport> report = solve_session(input, options, context);
+  Result<solve::SolveReport> report = solve::solve_session(input, options, context);
   const bool was_second = !report && report.error().kind == ErrorKind::kCannotCreate &&
                           is_there(options.output / kSolveProduct.document);
-  return was_second ? solve_session(input, options, context) : std::move(report);
+  return was_second ? solve::solve_session(input, options, context) : std::move(report);
 }
 
 // Only what is kept, made of a whole solve aside.
-Result<SolveReport> solve_lean(const SessionOptions& input, SolveOptions options, const SessionWork& work,
-                               const JobContext& context) {
+Result<solve::SolveReport> solve_lean(const solve::SessionOptions& input, solve::SolveOptions options,
+                                      const SessionWork& work, const JobContext& context) {
   const Product target = {kSolveProduct, work.planned.solve, work.solves / work.planned.solve};
   const Result<std::optional<Json>> finished = find_finished(target);
   if (!finished) return finished.error();
   if (*finished) {
     Result<SolveFacts> facts = solve_facts_from_json(**finished, target.folder.string());
     if (!facts) return std::move(facts).error();
-    return SolveReport{target.folder, true, std::move(*facts), {}, {}, {}};
+    return solve::SolveReport{target.folder, true, std::move(*facts), {}, {}, {}};
   }
   PartialFolder partial(target.folder);
   options.output = partial.path() / "solve";
-  Result<SolveReport> report = solve_session(input, options, context);
+  Result<solve::SolveReport> report = solve::solve_session(input, options, context);
   if (!report) return report;
   if (Result<void> ok = make_lean(options.output, work.product, target.id); !ok) return std::move(ok).error();
   Result<void> published = publish_folder(options.output, target.folder);
@@ -83,9 +83,9 @@ Result<SolveReport> solve_lean(const SessionOptions& input, SolveOptions options
   return report;
 }
 
-void add_facts_of(const SolveReport& report, batch::Outcome& outcome) {
+void add_facts_of(const solve::SolveReport& report, TaskOutcome& outcome) {
   const SolveFacts& facts = report.facts;
-  outcome.state = report.was_there ? batch::State::kThere : batch::State::kSolved;
+  outcome.state = report.was_there ? TaskState::kThere : TaskState::kSolved;
   outcome.solve = facts.id;
   outcome.folder = report.folder.string();
   outcome.read_s = report.seconds.read;
@@ -101,7 +101,7 @@ void add_facts_of(const SolveReport& report, batch::Outcome& outcome) {
   for (const Verdict& warning : facts.warnings) outcome.warnings.push_back(warning.name);
 }
 
-void compare_with_before(const SessionWork& work, const JobContext& context, batch::Outcome& outcome) {
+void compare_with_before(const SessionWork& work, const JobContext& context, TaskOutcome& outcome) {
   const std::string& before = work.planned.before;
   if (before.empty() || before == outcome.solve) return;
   const fs::path folder = work.session / "solve" / before;
@@ -110,7 +110,7 @@ void compare_with_before(const SessionWork& work, const JobContext& context, bat
     return;
   }
   Stopwatch watch;
-  const Result<batch::MapChange> change = compare_solves(folder, outcome.folder, context.threads);
+  const Result<MapChange> change = compare_solves(folder, outcome.folder, context.threads);
   outcome.compare_s = watch.lap();
   if (change) {
     outcome.change = *change;
@@ -121,35 +121,36 @@ void compare_with_before(const SessionWork& work, const JobContext& context, bat
 
 }  // namespace
 
-batch::Outcome ended_by(const SessionWork& work, Error error) {
+TaskOutcome ended_by(const SessionWork& work, Error error) {
   // Readers of images and LibRaw catch it, and what they then say is of a file.
   if (error.why.find("bad_alloc") != std::string::npos)
     error = {ErrorKind::kTryAgain, "out of memory", work.session.string(), error.what,
              "run it with more --memory, or on a larger machine"};
-  batch::Outcome outcome;
+  TaskOutcome outcome;
   outcome.plan = work.header->id;
   outcome.session = work.planned.session;
-  outcome.state = batch::is_of_session(error.kind) ? batch::State::kFailed : batch::State::kLost;
+  outcome.state = is_of_session(error.kind) ? TaskState::kFailed : TaskState::kLost;
   outcome.error = std::move(error);
   return outcome;
 }
 
-batch::Outcome work_on_session(const SessionWork& work, const JobContext& context) {
+TaskOutcome work_on_session(const SessionWork& work, const JobContext& context) {
   Stopwatch watch;
   const Result<fs::path> calibration = check_session(work);
   if (!calibration) return ended_by(work, calibration.error());
-  SolveOptions options;
+  solve::SolveOptions options;
   options.method = work.planned.quality;
   options.plan = work.header->id;
   options.compression = compression_of(work.product);
-  const batch::Forecast& forecast = work.planned.forecast;
+  const Forecast& forecast = work.planned.forecast;
   if (forecast.solve_seconds > 0)
     options.foretold = SolvePrice{forecast.solve_seconds, forecast.degrees, forecast.solved, {}};
-  const SessionOptions input = {.folder = work.session, .calibration = *calibration, .leds = {}};
-  const Result<SolveReport> report = work.product.is_whole() ? solve_whole(input, options, work, context)
-                                                             : solve_lean(input, options, work, context);
+  const solve::SessionOptions input = {.folder = work.session, .calibration = *calibration, .leds = {}};
+  const Result<solve::SolveReport> report = work.product.is_whole()
+                                                ? solve_whole(input, options, work, context)
+                                                : solve_lean(input, options, work, context);
   if (!report) return ended_by(work, report.error());
-  batch::Outcome outcome;
+  TaskOutcome outcome;
   outcome.plan = work.header->id;
   outcome.session = work.planned.session;
   add_facts_of(*report, outcome);
@@ -162,4 +163,4 @@ batch::Outcome work_on_session(const SessionWork& work, const JobContext& contex
   return outcome;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

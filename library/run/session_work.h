@@ -8,13 +8,13 @@
 #include "library/batch/outcome.h"
 #include "library/batch/plan.h"
 
-namespace weft::app {
+namespace weft::library {
 
 /// A session of a plan, and where it is worked on.
 struct SessionWork {
-  const batch::Header* header = nullptr;
-  batch::PlannedSolve planned;
-  batch::BatchProduct product;         ///< what is kept
+  const BatchHeader* header = nullptr;
+  PlannedSolve planned;
+  BatchProduct product;           ///< what is kept
   std::filesystem::path session;  ///< where it is now: as planned, or fetched
   std::filesystem::path solves;   ///< its solves go here by their id
 };
@@ -23,9 +23,9 @@ struct SessionWork {
 /// solve before: kSolved or kThere, or kFailed or kLost with the error. A session that is not where it was is
 /// a kNoInput, one that was changed since the plan a kBadData, both by name. Whoever is second of two that
 /// publish one solve finds it there.
-batch::Outcome work_on_session(const SessionWork& work, const JobContext& context);
+TaskOutcome work_on_session(const SessionWork& work, const JobContext& context);
 
 /// An outcome that an error ended: a failure where it is of the session, else no result.
-batch::Outcome ended_by(const SessionWork& work, Error error);
+TaskOutcome ended_by(const SessionWork& work, Error error);
 
-}  // namespace weft::app
+}  // namespace weft::library

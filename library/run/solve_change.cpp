@@ -22,7 +22,7 @@
 #include "core/solve/status_blend.h"
 #include "material/read/compare.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
@@ -141,10 +141,10 @@ Cells cells_of(View<const float> angles) {
   return cells;
 }
 
-batch::WorstWindow worst_of(View<const float> angles) {
+WorstWindow worst_of(View<const float> angles) {
   const Cells cells = cells_of(angles);
   const int side = std::min({kWindow / kCell, cells.columns, cells.rows});
-  batch::WorstWindow worst = {0, 0, std::min({side * kCell, angles.width(), angles.height()}), 0};
+  WorstWindow worst = {0, 0, std::min({side * kCell, angles.width(), angles.height()}), 0};
   for (int row = 0; row + side <= cells.rows; ++row) {
     for (int column = 0; column + side <= cells.columns; ++column) {
       double sum = 0;
@@ -201,7 +201,7 @@ std::optional<double> sigma_median(const SolveFacts& facts) {
   return facts.sigma_normal_deg ? facts.sigma_normal_deg->median : std::nullopt;
 }
 
-Result<void> add_facts(const fs::path& before, const fs::path& after, batch::MapChange& change) {
+Result<void> add_facts(const fs::path& before, const fs::path& after, MapChange& change) {
   const Result<SolveFacts> old = facts_in(before), now = facts_in(after);
   if (!old) return old.error();
   if (!now) return now.error();
@@ -257,7 +257,7 @@ Result<Image<float>> MapRows::read(Rect part) const {
   return planes;
 }
 
-Result<batch::MapChange> compare_solves(const fs::path& before, const fs::path& after, int threads) {
+Result<MapChange> compare_solves(const fs::path& before, const fs::path& after, int threads) {
   const Result<Solves> solves = open_solves(before, after);
   if (!solves) return solves.error();
   const Size size = solves->size;
@@ -276,7 +276,7 @@ Result<batch::MapChange> compare_solves(const fs::path& before, const fs::path& 
   });
   if (failure) return *failure;
 
-  batch::MapChange change;
+  MapChange change;
   change.worst = worst_of(angles.plane());
   std::vector<float> all;
   all.reserve(static_cast<std::size_t>(size.pixels()));
@@ -288,7 +288,7 @@ Result<batch::MapChange> compare_solves(const fs::path& before, const fs::path& 
     return Error{ErrorKind::kBadData, "nothing to compare", after.string(),
                  "no pixel has a normal in both solves", "look at both reports"};
   }
-  const NormalComparison normal = summarize(all);
+  const solve::NormalComparison normal = solve::summarize(all);
   change.pixels = normal.pixels;
   change.mean_deg = normal.mean_deg;
   change.median_deg = normal.median_deg;
@@ -305,4 +305,4 @@ Result<batch::MapChange> compare_solves(const fs::path& before, const fs::path& 
   return change;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

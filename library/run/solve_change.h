@@ -13,7 +13,7 @@
 
 // How the maps of one solve differ from those of another of the same photographs.
 
-namespace weft::app {
+namespace weft::library {
 
 /// Rows of an EXR map, read from the file where it is uncompressed, else from memory.
 class MapRows {
@@ -35,7 +35,7 @@ class MapRows {
 /// of 80 pixels, on a grid of 16, with the largest mean angle. Bands of rows are read at a time: 8 bytes a
 /// pixel are held, 16 while status is compared, and compressed maps whole. kBadData where sizes differ or no
 /// pixel has a normal in both; errors of reading.
-Result<batch::MapChange> compare_solves(const std::filesystem::path& before,
-                                        const std::filesystem::path& after, int threads);
+Result<MapChange> compare_solves(const std::filesystem::path& before, const std::filesystem::path& after,
+                                 int threads);
 
-}  // namespace weft::app
+}  // namespace weft::library

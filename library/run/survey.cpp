@@ -22,13 +22,13 @@
 #include "solve/session/current.h"
 #include "solver/method.h"
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
 
 // Bytes a pixel of the maps that stay, as docs/formats.md has them.
-double map_bytes(const batch::BatchProduct& product) {
+double map_bytes(const BatchProduct& product) {
   double bytes = 0;
   for (const auto& [name, each] : std::map<std::string, double>{{"normal", product.half ? 6 : 12},
                                                                 {"albedo", 6},
@@ -65,8 +65,8 @@ class Calibrations {
 };
 
 // The calibration that is named for the rig of a session; none: its own.
-const batch::NamedCalibration* named_for(const Session& session, const batch::Header& header) {
-  const auto found = std::ranges::find(header.calibrations, session.rig, &batch::NamedCalibration::rig);
+const NamedCalibration* named_for(const Session& session, const BatchHeader& header) {
+  const auto found = std::ranges::find(header.calibrations, session.rig, &NamedCalibration::rig);
   return found == header.calibrations.end() ? nullptr : &*found;
 }
 
@@ -80,7 +80,7 @@ std::string words_of_solve(const fs::path& folder) {
                      input.is_object() ? input.value("calibration", Json()).dump() : "");
 }
 
-Result<std::uint64_t> bytes_of_frames(const SolvePlan& plan) {
+Result<std::uint64_t> bytes_of_frames(const solve::SolvePlan& plan) {
   std::uint64_t bytes = 0;
   for (const fs::path& file : plan.files()) {
     std::error_code failed;
@@ -90,19 +90,19 @@ Result<std::uint64_t> bytes_of_frames(const SolvePlan& plan) {
   return bytes;
 }
 
-void add_levels(SolvePlan& plan, const SurveyOptions& options, Candidate& candidate) {
-  const fs::path parent = batch::solve_parent(options.header, candidate.input.folder.string());
-  const batch::BatchProduct& product = options.header.product;
+void add_levels(solve::SolvePlan& plan, const SurveyOptions& options, Candidate& candidate) {
+  const fs::path parent = solve_parent(options.header, candidate.input.folder.string());
+  const BatchProduct& product = options.header.product;
   for (const solver::MethodName& method : solver::method_names()) {
     if (!method.level) continue;
     plan.extent = method.extent;
     LevelOfSession level;
-    SolveOptions solve;
+    solve::SolveOptions solve;
     solve.method = method.name;
     solve.compression = compression_of(product);
-    level.solve = lean_id(id_of_solve(plan, solve), product);
+    level.solve = lean_id(solve::id_of_solve(plan, solve), product);
     level.is_there = is_there(parent / level.solve / kSolveProduct.document);
-    level.memory_bytes = with_room(memory_needed(plan, resolved_threads(options.threads)));
+    level.memory_bytes = with_room(solve::memory_needed(plan, resolved_threads(options.threads)));
     level.pixels_share = method.extent == solver::Extent::kHalfSize ? 0.25 : 1;
     level.write_bytes = static_cast<std::uint64_t>(level.pixels_share * map_bytes(product) *
                                                    static_cast<double>(plan.size.pixels()));
@@ -114,7 +114,7 @@ Result<void> look_into(const SurveyOptions& options, Calibrations& calibrations,
   const fs::path& folder = candidate.input.folder;
   const Result<Session> session = read_session(folder);
   if (!session) return session.error();
-  const batch::NamedCalibration* const named = named_for(*session, options.header);
+  const NamedCalibration* const named = named_for(*session, options.header);
   if (named != nullptr) candidate.input.calibration = named->folder;
   const std::string id = named != nullptr ? named->id : session->calibration_id;
   const Result<Calibration>& calibration =
@@ -126,14 +126,14 @@ Result<void> look_into(const SurveyOptions& options, Calibrations& calibrations,
                  fmt::format("its id is {:.12}, session.json names {:.12}", calibration->id, id),
                  "restore the session's calibration folder, or name another with --calibration"};
   }
-  Result<SolvePlan> plan = plan_unopened(candidate.input, *calibration);
+  Result<solve::SolvePlan> plan = solve::plan_unopened(candidate.input, *calibration);
   if (!plan) return std::move(plan).error();
   const Result<std::uint64_t> bytes = bytes_of_frames(*plan);
   if (!bytes) return bytes.error();
   candidate.read_bytes = *bytes;
-  candidate.digest = batch::digest_of_session(session->document);
+  candidate.digest = digest_of_session(session->document);
   candidate.rig = session->rig;
-  candidate.before = library::current_solve(*session);
+  candidate.before = solve::current_solve(*session);
   candidate.size = plan->size;
   candidate.traits = {session->fabric, id,
                       candidate.before.empty() ? "" : words_of_solve(folder / "solve" / candidate.before),
@@ -212,14 +212,14 @@ Result<std::vector<Candidate>> survey(const std::vector<fs::path>& sessions, con
   return candidates;
 }
 
-Result<std::vector<batch::NamedCalibration>> read_named(const std::vector<fs::path>& folders) {
-  std::vector<batch::NamedCalibration> named;
+Result<std::vector<NamedCalibration>> read_named(const std::vector<fs::path>& folders) {
+  std::vector<NamedCalibration> named;
   for (const fs::path& folder : folders) {
     const fs::path path = absolute_folder(folder);
     const Result<Calibration> calibration = read_calibration(path);
     if (!calibration) return calibration.error();
     const std::string& rig = calibration->subject.rig;
-    if (std::ranges::find(named, rig, &batch::NamedCalibration::rig) != named.end()) {
+    if (std::ranges::find(named, rig, &NamedCalibration::rig) != named.end()) {
       return Error{ErrorKind::kUsage, "two calibrations are of one rig", path.string(),
                    fmt::format("another one is of \"{}\" too", rig), "name one of each rig"};
     }
@@ -228,4 +228,4 @@ Result<std::vector<batch::NamedCalibration>> read_named(const std::vector<fs::pa
   return named;
 }
 
-}  // namespace weft::app
+}  // namespace weft::library

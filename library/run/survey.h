@@ -16,7 +16,7 @@
 
 // What sessions are, seen without opening a photograph.
 
-namespace weft::app {
+namespace weft::library {
 
 /// One level that a session could be solved at.
 struct LevelOfSession {
@@ -27,10 +27,10 @@ struct LevelOfSession {
 };
 
 struct Candidate {
-  SessionOptions input;
+  solve::SessionOptions input;
   std::optional<Error> error = {};  ///< why it cannot be solved; then nothing else is known
   std::string digest, rig, before;  ///< before: id of its current solve
-  batch::Traits traits;
+  SessionTraits traits;
   Size size;
   std::vector<LevelOfSession> levels;  ///< in the order of level_names()
   std::uint64_t read_bytes = 0;
@@ -43,8 +43,8 @@ std::uint64_t with_room(std::uint64_t bytes);
 std::vector<std::string> level_names();
 
 struct SurveyOptions {
-  const batch::Header& header;  ///< archive, output, product and calibrations
-  int threads = 0;              ///< that solves will have
+  const BatchHeader& header;  ///< archive, output, product and calibrations
+  int threads = 0;            ///< that solves will have
 };
 
 /// Folders of sessions at and below those named, absolute, in their order, each once. kNoInput for what is
@@ -57,6 +57,6 @@ Result<std::vector<Candidate>> survey(const std::vector<std::filesystem::path>& 
                                       const SurveyOptions& options, const JobContext& context);
 
 /// Reads named calibrations. kUsage where two are of one rig; errors of read_calibration().
-Result<std::vector<batch::NamedCalibration>> read_named(const std::vector<std::filesystem::path>& folders);
+Result<std::vector<NamedCalibration>> read_named(const std::vector<std::filesystem::path>& folders);
 
-}  // namespace weft::app
+}  // namespace weft::library

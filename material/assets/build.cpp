@@ -10,7 +10,7 @@
 
 #include "core/base/files.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -141,4 +141,4 @@ Result<BuildReport> build_materials(const BuildOptions& options, const JobContex
   return report;
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

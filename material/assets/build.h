@@ -13,7 +13,7 @@
 #include "material/assets/material_place.h"
 #include "material/assets/tree.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// A folder of its own, BUILD/<id>/, complete or not there.
 inline constexpr ProductKind kMaterialProduct = {"weft.material-build", "material.json", "built material",
@@ -48,4 +48,4 @@ Result<BuildReport> build_materials(const BuildOptions& options, const JobContex
 /// Where a material is built unless an output is named; empty for one of weft's own.
 std::filesystem::path build_folder_of(const MaterialPlace& place);
 
-}  // namespace weft::app
+}  // namespace weft::material

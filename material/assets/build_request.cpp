@@ -3,7 +3,7 @@
 
 #include "core/describe/described_fields.h"
 
-namespace weft::app {
+namespace weft::material {
 
 void describe(Fields& fields, BuildRequest& r) {
   fields.value({.name = "files",
@@ -19,4 +19,4 @@ void describe(Fields& fields, BuildRequest& r) {
                r.compose.has_pictures);
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -8,7 +8,7 @@
 #include "core/describe/fields.h"
 #include "material/assets/compose.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// What `weft material build` and a job that builds are told.
 struct BuildRequest {
@@ -18,4 +18,4 @@ struct BuildRequest {
 };
 void describe(Fields& fields, BuildRequest& request);
 
-}  // namespace weft::app
+}  // namespace weft::material

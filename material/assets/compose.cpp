@@ -24,13 +24,11 @@
 #include "material/run/surface_files.h"
 #include "solve/files/pictures.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
-using enum material::Parameter;
-using material::Parameter;
-using material::ParameterField;
+using enum Parameter;
 
 // How a parameter is written where it is a map.
 struct WrittenMap {
@@ -51,7 +49,7 @@ const std::vector<WrittenMap>& plain_maps() {
 }
 
 Image<float> filled_map(const ParameterField& field, Size size) {
-  if (field.is_map()) return std::move(material::copy_of(field).map);
+  if (field.is_map()) return std::move(copy_of(field).map);
   Image<float> map(size, field.planes);
   for (int p = 0; p < field.planes; ++p) {
     for (int y = 0; y < size.height; ++y)
@@ -106,8 +104,8 @@ class Composer {
   }
 
   void note_parameter(Parameter parameter, const ParameterField& field) {
-    const material::ParameterFacts& facts = material::facts_of(parameter);
-    const int count = material::numbers_of(facts.kind);
+    const ParameterFacts& facts = facts_of(parameter);
+    const int count = numbers_of(facts.kind);
     Json value = count == 1 ? Json(field.constant[0]) : Json(field.constant);
     parameters_[facts.name] = {{"value", std::move(value)}, {"source", stack_.source(parameter)}};
   }
@@ -134,7 +132,7 @@ class Composer {
         if (map.parameter == kMetallic) point_.metallic = field->constant[0];
         continue;
       }
-      const std::array<double, 3> mean = material::means_of(*field);
+      const std::array<double, 3> mean = means_of(*field);
       if (map.parameter == kSpecularTint) point_.f0_tint = mean;
       if (map.parameter == kSheenRoughness) point_.sheen_alpha = mean[0] * mean[0];
       if (map.parameter == kMetallic) point_.metallic = mean[0];
@@ -177,7 +175,7 @@ class Composer {
     MapFacts facts = {.name = "roughness",
                       .channels = {"roughness", "alpha", "alpha_along", "yarn_deg"},
                       .source = map_source_named(source)};
-    facts.more = {{"scale", material::name_of(material::GlossScale::kRoughness)}};
+    facts.more = {{"scale", name_of(GlossScale::kRoughness)}};
     if (is_round) note_parameter(kAnisotropy, *axis);
     if (is_round && !roughness->is_map()) {
       note_parameter(kRoughness, *roughness);
@@ -200,7 +198,7 @@ class Composer {
       const int y = static_cast<int>(row);
       for (int x = 0; x < node_.size.width; ++x) {
         const double across = roughness.at(x, y) * roughness.at(x, y);
-        const material::YarnAxis yarn = material::axis_from(axis.at(x, y, 0), axis.at(x, y, 1));
+        const YarnAxis yarn = axis_from(axis.at(x, y, 0), axis.at(x, y, 1));
         lobe(x, y, 0) = static_cast<float>(across);
         lobe(x, y, 1) = static_cast<float>(across * (1 - yarn.anisotropy));
         lobe(x, y, 2) = static_cast<float>(yarn.azimuth_deg);
@@ -223,8 +221,8 @@ class Composer {
   }
 
   Result<void> write_specular(ParameterField& specular) {
-    material::multiply(specular, {material::kF0OfSpecular, 1, 1}, context_.threads);
-    point_.f0 = material::means_of(specular)[0];
+    multiply(specular, {kF0OfSpecular, 1, 1}, context_.threads);
+    point_.f0 = means_of(specular)[0];
     MapFacts facts = {.name = "specular",
                       .unit = "share",
                       .channels = {"f0"},
@@ -235,7 +233,7 @@ class Composer {
     facts.why = "the same everywhere";
     maps_.push_back(json_of(facts));
     parameters_["f0"] = {{"value", specular.constant[0]}, {"source", stack_.source(kSpecular)}};
-    material::multiply(specular, {1 / material::kF0OfSpecular, 1, 1}, 1);
+    multiply(specular, {1 / kF0OfSpecular, 1, 1}, 1);
     note_parameter(kSpecular, specular);
     return {};
   }
@@ -246,8 +244,8 @@ class Composer {
     if (!cloth) return std::move(cloth).error();
     Result<ParameterField> sheen = stack_.composed(kSheen);
     if (!sheen) return std::move(sheen).error();
-    point_.cloth = material::means_of(*cloth)[0];
-    point_.sheen = material::means_of(*sheen);
+    point_.cloth = means_of(*cloth)[0];
+    point_.sheen = means_of(*sheen);
     const bool is_used = cloth->is_map() || cloth->constant[0] > 0;
     if (!cloth->is_map()) note_parameter(kCloth, *cloth);
     if (!sheen->is_map()) note_parameter(kSheen, *sheen);
@@ -297,13 +295,13 @@ class Composer {
   // beneath.
   Result<void> write_mips() {
     if (!has_relief_ && surface_.lobe.empty()) return {};
-    Result<std::vector<material::MipLevel>> levels =
-        material::roughness_mips(surface_, {.alpha = alpha_, .threads = context_.threads});
+    Result<std::vector<MipLevel>> levels =
+        roughness_mips(surface_, {.alpha = alpha_, .threads = context_.threads});
     if (!levels) return std::move(levels).error();
     const fs::path folder = folder_ / "mips";
     if (Result<void> ok = make_writable_folder(folder); !ok) return ok;
     Json listed = Json::array();
-    for (const material::MipLevel& level : *levels) {
+    for (const MipLevel& level : *levels) {
       const std::string number = fmt::format("{:02}", level.level);
       const WriteOptions as_float = {.compression = options_.compression},
                          as_half = {.type = SampleType::kHalf, .compression = options_.compression};
@@ -325,7 +323,7 @@ class Composer {
     MapFacts facts = {
         .name = "mips", .file = "mips/lobe_LL.exr", .channels = {"alpha", "alpha_along", "yarn_deg"}};
     measure(facts, levels_.front().lobe.plane(0));
-    facts.more = {{"rule", material::name_of(material::MipRule::kVmf)}, {"levels", std::move(listed)}};
+    facts.more = {{"rule", name_of(MipRule::kVmf)}, {"levels", std::move(listed)}};
     maps_.push_back(json_of(facts));
     return {};
   }
@@ -344,7 +342,7 @@ class Composer {
     point_.alpha = point_.alpha_along = alpha_;
     const PreviewMaps maps = {
         .surface = surface_, .levels = levels_, .size_mm = node_.size_mm, .point = point_};
-    return write_png(folder_ / "preview.png", preview_of(maps, context_.threads));
+    return solve::write_png(folder_ / "preview.png", preview_of(maps, context_.threads));
   }
 
   Json document() const {
@@ -383,11 +381,11 @@ class Composer {
   fs::path folder_;
   const ComposeOptions& options_;
   const JobContext& context_;
-  material::Surface surface_;
+  Surface surface_;
   bool has_relief_ = false;
   double alpha_ = 0.49;
   ShadedPoint point_;
-  std::vector<material::MipLevel> levels_;
+  std::vector<MipLevel> levels_;
   Json maps_ = Json::array(), parameters_ = Json::object();
   std::vector<Verdict> verdicts_;
 };
@@ -401,4 +399,4 @@ Result<Json> compose_material(const MaterialNode& node, std::vector<MapSet> laye
   return Composer(node, std::move(*stack), folder, options, context).run();
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

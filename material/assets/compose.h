@@ -11,7 +11,7 @@
 #include "material/assets/map_set.h"
 #include "material/assets/tree.h"
 
-namespace weft::app {
+namespace weft::material {
 
 struct ComposeOptions {
   Compression compression = Compression::kNone;
@@ -26,4 +26,4 @@ Result<Json> compose_material(const MaterialNode& node, std::vector<MapSet> laye
                               const std::filesystem::path& folder, const ComposeOptions& options,
                               const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -10,7 +10,7 @@
 #include "core/base/files.h"
 #include "core/base/json_document.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,4 +73,4 @@ Result<void> DigestCache::save() const {
   return write_json(file_, {{"schema", std::string(kDigestsSchema) + "/1"}, {"files", std::move(files)}});
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -8,7 +8,7 @@
 
 #include "core/base/result.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// SHA-256 of files. What a file was when it was read last spares reading it again and decides nothing else:
 /// a file that was only touched is read, and has the digest that it had.
@@ -36,4 +36,4 @@ class DigestCache {
   int hashed_ = 0;
 };
 
-}  // namespace weft::app
+}  // namespace weft::material

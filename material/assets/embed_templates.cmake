@@ -5,7 +5,7 @@ list(SORT files)
 set(text "// SPDX-License-Identifier: Apache-2.0
 #include \"material/assets/material_place.h\"
 
-namespace weft::app {
+namespace weft::material {
 
 const std::vector<ShippedMaterial>& shipped_materials() {
   static const std::vector<ShippedMaterial> materials = {
@@ -15,4 +15,4 @@ foreach(each ${files})
   string(REGEX REPLACE "\\.toml$" "" name ${each})
   string(APPEND text "{\"${name}\", R\"text(${toml})text\"},\n")
 endforeach()
-file(WRITE ${OUTPUT} "${text}};\n  return materials;\n}\n\n}  // namespace weft::app\n")
+file(WRITE ${OUTPUT} "${text}};\n  return materials;\n}\n\n}  // namespace weft::material\n")

@@ -7,7 +7,7 @@
 
 #include "material/assets/tree.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 // A text of Graphviz in its quotes.
@@ -57,4 +57,4 @@ std::string graph_of(const MaterialTree& tree) {
   return "digraph materials {\n  rankdir=LR;\n" + boxes + arrows + "}\n";
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

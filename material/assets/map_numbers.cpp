@@ -14,13 +14,9 @@
 #include "material/filtering/joined_gloss.h"
 #include "material/read/file_meaning.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
-using material::Parameter;
-using material::ParameterFacts;
-using material::ParameterField;
-using material::ParameterKind;
 using Values = std::array<double, 3>;
 
 // What half floats and whole steps may lie outside a range.
@@ -57,9 +53,9 @@ Result<std::vector<View<const float>>> planes_wanted(const LoadedImage& image, c
 }
 
 double perceptual(double value, const std::string& unit) {
-  const auto scale = material::gloss_scale_named(unit);
-  if (!scale || *scale == material::GlossScale::kRoughness) return value;
-  return material::on_scale(material::GlossScale::kRoughness, material::alpha_of(*scale, value));
+  const auto scale = gloss_scale_named(unit);
+  if (!scale || *scale == GlossScale::kRoughness) return value;
+  return on_scale(GlossScale::kRoughness, alpha_of(*scale, value));
 }
 
 // A parameter of roughness.exr: whatever way its axes stand, the broad one is across the yarn.
@@ -88,7 +84,7 @@ bool is_packed(const ImageFileInfo& info, const std::vector<View<const float>>& 
 
 Conversion conversion_of(Parameter parameter, const MapFile& map, const ImageFileInfo& info,
                          const std::vector<View<const float>>& planes) {
-  const ParameterFacts& facts = material::facts_of(parameter);
+  const ParameterFacts& facts = facts_of(parameter);
   Conversion to = {parameter, facts, map};
   to.is_srgb =
       map.is_srgb.value_or(facts.kind == ParameterKind::kColour && transfer_of(info) == Transfer::kSrgb);
@@ -116,7 +112,7 @@ bool convert(const Conversion& to, Values& v, std::size_t count) {
     if (count == 2) v[2] = std::sqrt(std::max(0.0, 1 - v[0] * v[0] - v[1] * v[1]));
     const double length = std::hypot(v[0], v[1], v[2]);
     if (!(length > 0.5 && length < 1.5)) return false;
-    const auto slopes = material::slopes_of_normal(v[0], to.map.y_is_down ? -v[1] : v[1], v[2]);
+    const auto slopes = slopes_of_normal(v[0], to.map.y_is_down ? -v[1] : v[1], v[2]);
     v = {slopes[0], slopes[1], 0};
     return true;
   }
@@ -131,14 +127,14 @@ bool convert(const Conversion& to, Values& v, std::size_t count) {
 }
 
 ParameterField same_field(Parameter parameter, const std::vector<double>& values) {
-  const ParameterFacts& facts = material::facts_of(parameter);
+  const ParameterFacts& facts = facts_of(parameter);
   Values v = {};
   std::copy_n(values.begin(), std::min(values.size(), v.size()), v.begin());
   if (facts.kind == ParameterKind::kNormal) {
-    const auto slopes = material::slopes_of_normal(v[0], v[1], v[2]);
+    const auto slopes = slopes_of_normal(v[0], v[1], v[2]);
     return ParameterField::same({slopes[0], slopes[1], 0}, 2);
   }
-  return ParameterField::same(v, material::numbers_of(facts.kind));
+  return ParameterField::same(v, numbers_of(facts.kind));
 }
 
 std::string range_words(const Conversion& to) {
@@ -154,12 +150,10 @@ Result<ParameterField> read_field(Parameter parameter, const MapFile& map, const
   if (map.same) return same_field(parameter, *map.same);
   const Result<LoadedImage> image = read_samples(map.file);
   if (!image) return image.error();
-  const ParameterFacts& facts = material::facts_of(parameter);
+  const ParameterFacts& facts = facts_of(parameter);
   // The third part of a normal follows from two.
   const bool lacks_z = facts.kind == ParameterKind::kNormal && map.channels.size() == 2;
-  const std::size_t count = map.is_lobe ? 3
-                            : lacks_z   ? 2
-                                        : static_cast<std::size_t>(material::numbers_of(facts.kind));
+  const std::size_t count = map.is_lobe ? 3 : lacks_z ? 2 : static_cast<std::size_t>(numbers_of(facts.kind));
   const Result<std::vector<View<const float>>> planes = planes_wanted(*image, map, count, where);
   if (!planes) return planes.error();
   const Conversion to = conversion_of(parameter, map, image->info, *planes);
@@ -213,4 +207,4 @@ Result<ParameterField> read_mask(const MapFile& map, std::size_t channel, const 
   return ParameterField::of(std::move(field));
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

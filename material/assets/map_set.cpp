@@ -17,12 +17,11 @@
 #include "material/run/maps.h"
 #include "material/run/session_sets.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
-using enum material::Parameter;
-using material::Parameter;
+using enum Parameter;
 
 // A map of a set that can be a parameter.
 struct ScanMap {
@@ -46,7 +45,7 @@ const std::vector<ScanMap>& scan_maps() {
       {kRoughness, "roughness", "roughness.exr", {"alpha", "alpha_along", "yarn_deg"}, 1, true},
       {kAnisotropy, "roughness", "roughness.exr", {"alpha", "alpha_along", "yarn_deg"}, 1, true},
       {kAnisotropyDeg, "roughness", "roughness.exr", {"alpha", "alpha_along", "yarn_deg"}, 1, true},
-      {kSpecular, "specular", "specular.exr", {"f0"}, 1 / material::kF0OfSpecular},
+      {kSpecular, "specular", "specular.exr", {"f0"}, 1 / kF0OfSpecular},
       {kSpecularTint, "specular_tint", "specular_tint.exr", {"R", "G", "B"}},
       {kMetallic, "metallic", "metallic.exr", {"metallic"}},
       {kSheen, "sheen", "sheen.exr", {"R", "G", "B"}},
@@ -104,8 +103,8 @@ Json provenance_of(const MapSet& set, const fs::path& scan) {
 Result<fs::path> folder_of_maps(const fs::path& scan) {
   if (is_there(scan / kMapsProduct.document) || is_there(scan / kMaterialProduct.document)) return scan;
   const Result<Session> session = read_session(scan);
-  const library::SessionSolves solves =
-      session ? library::solves_of(*session) : library::SessionSolves{.session = scan, .all = {}};
+  const solve::SessionSolves solves =
+      session ? solve::solves_of(*session) : solve::SessionSolves{.session = scan, .all = {}};
   const std::vector<SessionSet> sets = sets_of(solves);
   if (const SessionSet* set = set_to_use(solves, sets, {"height"})) return set->product.folder;
   return Error{ErrorKind::kNoInput, "there are no maps to take from", scan.string(),
@@ -119,8 +118,8 @@ Result<void> find_solve_of(MapSet& set, bool draft) {
   std::string remedy = "make better ones with weft maps";
   const Result<Session> session = read_session(absolute_folder(set.folder).parent_path().parent_path());
   if (const std::string id = text_at(set.document, "solve"); session && !id.empty()) {
-    const library::SessionSolves solves = library::solves_of(*session);
-    const library::ChoosableSolve* const solve = solves.find(id);
+    const solve::SessionSolves solves = solve::solves_of(*session);
+    const solve::ChoosableSolve* const solve = solves.find(id);
     set.stale = why_stale(solves, id);
     if (solve != nullptr) is_draft = solve->is_preview();
     if (solve != nullptr) set.provenance["level"] = solve->level;
@@ -137,7 +136,7 @@ Result<void> find_solve_of(MapSet& set, bool draft) {
 // One number or three, as a set says them in place of a file.
 std::optional<std::vector<double>> same_everywhere(const MapSet& set, const ScanMap& map) {
   const auto parameters = set.document.find("parameters");
-  const char* name = material::facts_of(map.parameter).name;
+  const char* name = facts_of(map.parameter).name;
   if (parameters != set.document.end() && parameters->contains(name)) {
     const Json& value = (*parameters)[name]["value"];
     return value.is_array() ? value.get<std::vector<double>>() : std::vector<double>{value.get<double>()};
@@ -180,7 +179,7 @@ const std::vector<ExportedParameter>& exported_parameters() {
       {kRoughness, {"roughness"}},
       {kRoughness, {"roughness.least"}},
       {kSpecular, {"specular"}},
-      {kSpecular, {"f0"}, 1 / material::kF0OfSpecular},
+      {kSpecular, {"f0"}, 1 / kF0OfSpecular},
       {kSpecularTint, {"specular_tint.r", "specular_tint.g", "specular_tint.b"}},
       {kMetallic, {"metallic"}},
       {kSheen, {"sheen.r", "sheen.g", "sheen.b"}},
@@ -231,7 +230,7 @@ Result<void> take_listing(Parameter parameter, const FileMeaning& meaning, const
     names += (names.empty() ? "" : ", ") + (channel.is.empty() ? "nothing known" : channel.is);
   return unusable(ErrorKind::kBadData, where,
                   fmt::format("by its export.json {} holds {}, and no {}", map.file.filename().string(),
-                              names, material::facts_of(parameter).name),
+                              names, facts_of(parameter).name),
                   "name another file of the export, or say channel");
 }
 
@@ -244,7 +243,7 @@ Result<void> take_tags(Parameter parameter, const FileMeaning& meaning, const Js
       parameter == kNormal && places) {
     for (const std::size_t place : *places) map.channels.push_back(info.channels[place]);
   }
-  const bool is_color = material::facts_of(parameter).kind == material::ParameterKind::kColour;
+  const bool is_color = facts_of(parameter).kind == ParameterKind::kColour;
   if (is_color && info.color == ColorSpace::kOther && !says("transfer")) {
     return unusable(
         ErrorKind::kBadData, where,
@@ -351,7 +350,7 @@ Result<MapFile> map_of_scan(std::optional<Parameter> parameter, const Json& valu
     const auto other =
         std::ranges::find(scan_maps(), wanted, [](const ScanMap& map) { return std::string(map.name); });
     if (other == scan_maps().end()) return no_such_map(*set, wanted, where);
-    const auto &facts = material::facts_of(*parameter), &others = material::facts_of(other->parameter);
+    const auto &facts = facts_of(*parameter), &others = facts_of(other->parameter);
     return unusable(
         ErrorKind::kBadData, where,
         fmt::format("{} is in {}, and the map {} in {}", facts.name, facts.unit, wanted, others.unit),
@@ -416,7 +415,7 @@ Result<MapFile> find_map(Parameter parameter, const Json& value, const std::stri
   Result<MapFile> map =
       value.contains("scan") ? map_of_scan(parameter, value, where) : map_of_file(parameter, value, where);
   if (!map) return map;
-  const material::ParameterFacts& facts = material::facts_of(parameter);
+  const ParameterFacts& facts = facts_of(parameter);
   const bool is_other = !map->unit.empty() && map->unit != facts.unit && !map->scale && *facts.unit != 0;
   const bool is_gloss = parameter == kRoughness || parameter == kSheenRoughness;
   if (is_other && !is_gloss) {
@@ -432,13 +431,13 @@ Result<MapFile> find_mask(const Json& value, const std::string& where) {
   return value.contains("scan") ? map_of_scan({}, value, where) : map_of_file({}, value, where);
 }
 
-Result<material::ParameterField> read_built(const MapSet& built, Parameter parameter) {
+Result<ParameterField> read_built(const MapSet& built, Parameter parameter) {
   const auto map =
       std::ranges::find_if(scan_maps(), [&](const ScanMap& each) { return each.parameter == parameter; });
   const MapFile file = file_in(built, *map);
   if (file.file.empty() && !file.same) {
-    const material::ParameterFacts& facts = material::facts_of(parameter);
-    return material::ParameterField::same(facts.otherwise, material::numbers_of(facts.kind));
+    const ParameterFacts& facts = facts_of(parameter);
+    return ParameterField::same(facts.otherwise, numbers_of(facts.kind));
   }
   return read_field(parameter, file, built.folder.string());
 }
@@ -457,7 +456,7 @@ Result<void> expand_scan(MaterialFile& file) {
   }
   const std::string from = scan->second.from;
   for (const ScanMap& map : scan_maps()) {
-    const char* name = material::facts_of(map.parameter).name;
+    const char* name = facts_of(map.parameter).name;
     if (!map.is_own || file.surface.contains(name) || !has_map(*set, map)) continue;
     const MapFile found = file_in(*set, map);
     if (found.same && found.source == "assumed" && !is_there(set->folder / kMaterialProduct.document))
@@ -473,4 +472,4 @@ Result<void> expand_scan(MaterialFile& file) {
   return {};
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -16,7 +16,7 @@
 
 // Maps that materials take from: those of a scan, of a built material, or single files.
 
-namespace weft::app {
+namespace weft::material {
 
 /// A folder of maps of one size: of a session the set that set_to_use() says, with a height where one of them
 /// has it, a set (maps.json) or a built material (material.json).
@@ -62,7 +62,7 @@ struct MapFile {
 /// is for messages. kNoInput; kBadData with the nearest map that the scan has, for a unit that is another's,
 /// for a relative albedo without a scale, for a file that an export.json lists as something else, and for
 /// heights in integers of which nobody says the millimetres.
-Result<MapFile> find_map(material::Parameter parameter, const Json& value, const std::string& where);
+Result<MapFile> find_map(Parameter parameter, const Json& value, const std::string& where);
 /// Likewise of a mask or of weights.
 Result<MapFile> find_mask(const Json& value, const std::string& where);
 
@@ -70,16 +70,15 @@ Result<MapFile> find_mask(const Json& value, const std::string& where);
 /// normal unless a scale is said, and so do floats that show it (are_packed_normals()). kBadData with the
 /// first pixel that is no number or out of the parameter's range (an albedo from -1 to 4), and for channels
 /// that are not there.
-Result<material::ParameterField> read_field(material::Parameter parameter, const MapFile& map,
-                                            const std::string& where);
+Result<ParameterField> read_field(Parameter parameter, const MapFile& map, const std::string& where);
 /// One plane, scaled as it says; `channel` counts from 0 where the map names none.
-Result<material::ParameterField> read_mask(const MapFile& map, std::size_t channel, const std::string& where);
+Result<ParameterField> read_mask(const MapFile& map, std::size_t channel, const std::string& where);
 
 /// A parameter of a built material, not of the kind kFactor. Errors as of read_field().
-Result<material::ParameterField> read_built(const MapSet& built, material::Parameter parameter);
+Result<ParameterField> read_built(const MapSet& built, Parameter parameter);
 
 /// What a scan at the top of a file stands for: [surface] values of all maps that are measured or derived,
 /// and size_mm, where the file itself does not say them.
 Result<void> expand_scan(MaterialFile& file);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -11,11 +11,10 @@
 #include "core/toml/toml_json.h"
 #include "material/assets/material_keys.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
-using material::ParameterFacts;
 
 constexpr std::size_t kMostLayers = 256;
 
@@ -81,10 +80,10 @@ class MaterialParser {
     if (!value.is_object()) return unfit_material(in_, table, "it must be a table");
     const WrittenIn in = {fmt::format("{}: [{}]", in_.where, table), in_.folder};
     for (const auto& [name, each] : value.items()) {
-      const auto parameter = material::parameter_named(name);
+      const auto parameter = parameter_named(name);
       if (!parameter) {
         std::vector<std::string> names;
-        for (const ParameterFacts& facts : material::parameters()) names.emplace_back(facts.name);
+        for (const ParameterFacts& facts : parameters()) names.emplace_back(facts.name);
         return unfit_material(in, name, no_such_key(names, name));
       }
       Result<Json> read = value_of_parameter(*parameter, each, in);
@@ -165,7 +164,7 @@ class MaterialParser {
       const std::size_t dot = key.find('.');
       const std::string table = key.substr(0, dot),
                         rest = dot == std::string::npos ? "" : key.substr(dot + 1);
-      const bool is_parameter = (table == "surface" || table == "over") && material::parameter_named(rest);
+      const bool is_parameter = (table == "surface" || table == "over") && parameter_named(rest);
       const bool is_top =
           dot == std::string::npos && (key == "name" || key == "notes" || key == "size_mm" ||
                                        key == "is_tile" || key == "pixels" || key == "runtime");
@@ -203,4 +202,4 @@ Result<MaterialFile> read_material(const MaterialPlace& place) {
   return parse_material(*text, place);
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

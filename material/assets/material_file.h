@@ -14,7 +14,7 @@
 // weft.material/1: what a person writes of a material (docs/materials.md). A file says only what differs from
 // the one that it inherits.
 
-namespace weft::app {
+namespace weft::material {
 
 inline constexpr const char* kMaterialSchema = "weft.material";
 inline constexpr int kMostGenerations = 16;
@@ -60,4 +60,4 @@ Result<MaterialFile> parse_material(std::string_view text, const MaterialPlace& 
 /// parse_material() of its text.
 Result<MaterialFile> read_material(const MaterialPlace& place);
 
-}  // namespace weft::app
+}  // namespace weft::material

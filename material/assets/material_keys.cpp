@@ -13,13 +13,11 @@
 #include "material/assets/material_file.h"
 #include "material/filtering/joined_gloss.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
 using enum MaterialHolds;
-using material::ParameterFacts;
-using material::ParameterKind;
 
 const std::vector<MaterialKey>& map_keys() {
   static const std::vector<MaterialKey> keys = {
@@ -138,9 +136,9 @@ Result<Json> parameters_of(const MaterialKey& key, const Json& value, const Writ
   for (const Json& each : value) {
     if (!each.is_string()) return unfit_material(in, key.name, "it must be a list of parameters");
     const std::string name = each.get<std::string>();
-    if (material::parameter_named(name)) continue;
+    if (parameter_named(name)) continue;
     const auto nearest = std::ranges::min_element(
-        material::parameters(), {}, [&](const ParameterFacts& f) { return edit_distance(name, f.name); });
+        parameters(), {}, [&](const ParameterFacts& f) { return edit_distance(name, f.name); });
     return unfit_material(in, key.name,
                           fmt::format("there is no parameter {}; the nearest is {}", name, nearest->name));
   }
@@ -152,9 +150,9 @@ bool is_unit_of(const ParameterFacts& facts, const Json& map) {
   if (!map.contains("unit") || map.contains("scale")) return true;
   const std::string unit = map["unit"].get<std::string>();
   if (unit == facts.unit) return true;
-  const bool is_lobe = facts.parameter == material::Parameter::kRoughness ||
-                       facts.parameter == material::Parameter::kSheenRoughness;
-  return is_lobe && material::gloss_scale_named(unit).has_value();
+  const bool is_lobe =
+      facts.parameter == Parameter::kRoughness || facts.parameter == Parameter::kSheenRoughness;
+  return is_lobe && gloss_scale_named(unit).has_value();
 }
 
 }  // namespace
@@ -184,7 +182,7 @@ std::span<const MaterialKey> layer_keys() {
       {.name = "material", .holds = kFile},
       {.name = "mask", .holds = kMask},
       {.name = "alpha", .holds = kNumber, .least = 0, .most = 1},
-      {.name = "only", .holds = kParameters},
+      {.name = "only", .holds = kNames},
       {.name = "blend", .holds = kWord, .words = {"replace", "detail"}},
       {.name = "normals", .holds = kWord, .words = {"add-slopes", "whiteout", "rnm", "blend-xy"}},
       {.name = "tile_mm", .holds = kNumbers, .least = 1e-3, .most = 1e5, .count = 2},
@@ -258,7 +256,7 @@ Result<Json> value_of_key(const MaterialKey& key, const Json& value, const Writt
       return is_word ? Result<Json>(value)
                      : wrong(fmt::format("it must be one of {}", fmt::join(key.words, ", ")));
     }
-    case kParameters:
+    case kNames:
       return parameters_of(key, value, in);
     case kMask:
       return mask_of(value, in);
@@ -277,11 +275,10 @@ Result<Json> value_of_key(const MaterialKey& key, const Json& value, const Writt
   return value;
 }
 
-Result<Json> value_of_parameter(material::Parameter parameter, const Json& value, const WrittenIn& in) {
-  const ParameterFacts& facts = material::facts_of(parameter);
+Result<Json> value_of_parameter(Parameter parameter, const Json& value, const WrittenIn& in) {
+  const ParameterFacts& facts = facts_of(parameter);
   if (value.is_object()) {
-    if (facts.blend == material::BlendSpace::kFactor)
-      return unfit_material(in, facts.name, "it cannot be a map");
+    if (facts.blend == BlendSpace::kFactor) return unfit_material(in, facts.name, "it cannot be a map");
     Result<Json> map = map_of(value, facts.name, in);
     if (!map) return map;
     if (!is_unit_of(facts, *map)) {
@@ -292,7 +289,7 @@ Result<Json> value_of_parameter(material::Parameter parameter, const Json& value
     }
     return map;
   }
-  const auto count = static_cast<std::size_t>(material::numbers_of(facts.kind));
+  const auto count = static_cast<std::size_t>(numbers_of(facts.kind));
   const Json list = value.is_number() && count == 1 ? Json::array({value}) : value;
   const bool are_numbers =
       list.is_array() && list.size() == count && std::ranges::all_of(list, [](const Json& n) {
@@ -317,4 +314,4 @@ Result<Json> value_of_parameter(material::Parameter parameter, const Json& value
   return Json(list.get<std::vector<double>>());
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

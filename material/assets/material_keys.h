@@ -10,20 +10,20 @@
 #include "core/base/result.h"
 #include "material/layers/parameters.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// What a key of a material's file holds.
 enum class MaterialHolds {
   kText,
   kFlag,
   kNumber,
-  kNumbers,     ///< as many as `count`
-  kWholes,      ///< likewise, whole ones
-  kColour,      ///< 3 numbers
-  kWord,        ///< one of `words`
-  kParameters,  ///< a list of names of parameters
-  kFile,        ///< of a material
-  kFolder,      ///< of a scan
+  kNumbers,  ///< as many as `count`
+  kWholes,   ///< likewise, whole ones
+  kColour,   ///< 3 numbers
+  kWord,     ///< one of `words`
+  kNames,    ///< a list of names of parameters
+  kFile,     ///< of a material
+  kFolder,   ///< of a scan
   kMask,
   kMap,
   kTable,  ///< read by itself
@@ -59,6 +59,6 @@ Result<const MaterialKey*> known_key(const std::string& name, std::span<const Ma
 /// The value in its one form. kBadData.
 Result<Json> value_of_key(const MaterialKey& key, const Json& value, const WrittenIn& in);
 /// Likewise of a parameter: numbers or a map.
-Result<Json> value_of_parameter(material::Parameter parameter, const Json& value, const WrittenIn& in);
+Result<Json> value_of_parameter(Parameter parameter, const Json& value, const WrittenIn& in);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -11,7 +11,7 @@
 #include "core/base/files.h"
 #include "core/base/text.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,4 +118,4 @@ Result<std::string> material_text(const MaterialPlace& place) {
                "weft brings none of this name along", "weft material list names all"};
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

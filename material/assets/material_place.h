@@ -8,7 +8,7 @@
 
 #include "core/base/result.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// Before the name of a material that weft brings along, or that lies in the user's own library.
 inline constexpr std::string_view kLibraryPrefix = "library:";
@@ -45,4 +45,4 @@ std::vector<MaterialPlace> list_materials();
 /// The text of a file, or of what weft brings along. kNoInput.
 Result<std::string> material_text(const MaterialPlace& place);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -11,7 +11,7 @@
 #include "report/preview.h"
 #include "solver/reflectance/lobe.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 using solver::Lobe;
@@ -28,8 +28,6 @@ double facets(Lobe lobe, Vec3 normal, const solver::LitFrom& from, double yarn) 
 double schlick(double f0, double cosine) {
   return f0 + (1 - f0) * std::pow(1 - std::clamp(cosine, 0.0, 1.0), 5);
 }
-
-using material::ParameterField;
 
 struct Lamp {
   Vec3 to_light;
@@ -59,7 +57,7 @@ class Texture {
            mm_per_pixel * std::pow(2, level + 1) <= of_picture)
       ++level;
     mip_ = level == 0 ? nullptr : &maps.levels[static_cast<std::size_t>(level - 1)];
-    size_ = material::size_of_level(maps.surface.size(), level);
+    size_ = size_of_level(maps.surface.size(), level);
     if (mip_ != nullptr) {
       ParameterField albedo = {3, {}, {}};
       albedo.map = Image<float>(maps.surface.size(), 3);
@@ -67,7 +65,7 @@ class Texture {
         for (int y = 0; y < albedo.map.height(); ++y)
           std::copy_n(maps.surface.albedo.plane(p).row(y), albedo.map.width(), albedo.map.plane(p).row(y));
       }
-      small_ = material::fitted(albedo, material::BlendSpace::kLinear, {}, size_, threads);
+      small_ = fitted(albedo, BlendSpace::kLinear, {}, size_, threads);
     }
   }
 
@@ -106,7 +104,7 @@ class Texture {
   }
 
   const PreviewMaps& maps_;
-  const material::MipLevel* mip_ = nullptr;
+  const MipLevel* mip_ = nullptr;
   ParameterField small_;
   Size size_;
 };
@@ -181,4 +179,4 @@ report::Picture preview_of(const PreviewMaps& maps, int threads) {
   return picture;
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -11,7 +11,7 @@
 #include "material/surface.h"
 #include "report/drawing.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// A material at one place, in the terms of its parameters.
 struct ShadedPoint {
@@ -38,8 +38,8 @@ inline constexpr double kPreviewRadius_mm = 12;
 
 /// What a picture of a material is made of. `point` has what no map says.
 struct PreviewMaps {
-  const material::Surface& surface;
-  const std::vector<material::MipLevel>& levels;
+  const Surface& surface;
+  const std::vector<MipLevel>& levels;
   std::optional<std::array<double, 2>> size_mm;
   ShadedPoint point;
 };
@@ -48,4 +48,4 @@ struct PreviewMaps {
 /// orthographic; maps repeat on it at their true size, by the level of mips that has the picture's pixels.
 report::Picture preview_of(const PreviewMaps& maps, int threads);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -12,7 +12,7 @@
 #include "material/assets/material_file.h"
 #include "material/assets/resolve.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -85,4 +85,4 @@ Result<void> write_new_material(const NewMaterial& material) {
   return write_file(file, text);
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -7,7 +7,7 @@
 
 #include "core/base/result.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// A material to begin with.
 struct NewMaterial {
@@ -26,4 +26,4 @@ std::string text_of(const NewMaterial& material);
 /// then nothing is written; kInputOutput.
 Result<void> write_new_material(const NewMaterial& material);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -12,7 +12,7 @@
 #include "material/assets/map_set.h"
 #include "material/assets/material_keys.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -208,4 +208,4 @@ Json json_of(const ResolvedMaterial& material) {
           {"scans", scans_in(material)}};
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -8,7 +8,7 @@
 #include "core/base/result.h"
 #include "material/assets/material_file.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// A material with all that it inherits.
 struct ResolvedMaterial {
@@ -37,4 +37,4 @@ Result<ResolvedMaterial> resolve_material(const MaterialPlace& place, const Mate
 /// "scans"}: every value with the file that it comes from, and the solves that its own maps are of.
 Json json_of(const ResolvedMaterial& material);
 
-}  // namespace weft::app
+}  // namespace weft::material

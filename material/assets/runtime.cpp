@@ -7,7 +7,7 @@
 #include "core/base/files.h"
 #include "material/assets/build.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,4 +57,4 @@ Json layers_json(const RuntimeStack& stack, const std::map<std::string, std::vec
   return {{"schema", "weft.layers/1"}, {"weights", stack.weights}, {"layers", std::move(layers)}};
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

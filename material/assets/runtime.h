@@ -9,7 +9,7 @@
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// A built material that is mixed while it is drawn.
 struct RuntimeLayer {
@@ -31,4 +31,4 @@ Result<RuntimeStack> runtime_stack_of(const std::filesystem::path& built);
 /// the files that were packed of it. `files`: by the id of a built material.
 Json layers_json(const RuntimeStack& stack, const std::map<std::string, std::vector<std::string>>& files);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -12,19 +12,15 @@
 #include "material/layers/lay.h"
 #include "material/layers/masks.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
-using enum material::Parameter;
-using material::BlendSpace;
-using material::Parameter;
-using material::ParameterField;
-using material::ParameterKind;
+using enum Parameter;
 
 constexpr double kMaskRadius_mm = 0.5;
 
 bool has(const KeptValues& values, Parameter parameter) {
-  return values.contains(material::facts_of(parameter).name);
+  return values.contains(facts_of(parameter).name);
 }
 
 std::array<double, 3> three(const Json& numbers, double otherwise) {
@@ -35,16 +31,16 @@ std::array<double, 3> three(const Json& numbers, double otherwise) {
 
 // A typed value as a field.
 ParameterField typed_field(Parameter parameter, const std::array<double, 3>& v) {
-  const material::ParameterFacts& facts = material::facts_of(parameter);
-  if (facts.kind != ParameterKind::kNormal) return ParameterField::same(v, material::numbers_of(facts.kind));
-  const auto slopes = material::slopes_of_normal(v[0], v[1], v[2]);
+  const ParameterFacts& facts = facts_of(parameter);
+  if (facts.kind != ParameterKind::kNormal) return ParameterField::same(v, numbers_of(facts.kind));
+  const auto slopes = slopes_of_normal(v[0], v[1], v[2]);
   return ParameterField::same({slopes[0], slopes[1], 0}, 2);
 }
 
 // Anisotropies and azimuths as axes.
 ParameterField axes_of(const ParameterField& anisotropy, const ParameterField& azimuth_deg, int threads) {
   if (!anisotropy.is_map() && !azimuth_deg.is_map()) {
-    const auto axis = material::axis_of(anisotropy.constant[0], azimuth_deg.constant[0]);
+    const auto axis = axis_of(anisotropy.constant[0], azimuth_deg.constant[0]);
     return ParameterField::same({axis[0], axis[1], 0}, 2);
   }
   const Size size = anisotropy.is_map() ? anisotropy.map.size() : azimuth_deg.map.size();
@@ -52,7 +48,7 @@ ParameterField axes_of(const ParameterField& anisotropy, const ParameterField& a
   parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < size.width; ++x) {
-      const auto axis = material::axis_of(anisotropy.at(x, y), azimuth_deg.at(x, y));
+      const auto axis = axis_of(anisotropy.at(x, y), azimuth_deg.at(x, y));
       map(x, y, 0) = static_cast<float>(axis[0]);
       map(x, y, 1) = static_cast<float>(axis[1]);
     }
@@ -62,7 +58,7 @@ ParameterField axes_of(const ParameterField& anisotropy, const ParameterField& a
 
 // A typed factor of a table, where it has one.
 std::array<double, 3> factor_of(const KeptValues& values, Parameter factor) {
-  const auto found = values.find(material::facts_of(factor).name);
+  const auto found = values.find(facts_of(factor).name);
   if (found == values.end()) return {1, 1, 1};
   const Json& numbers = found->second.value;
   return three(numbers, numbers.size() == 1 ? numbers[0].get<double>() : 1);
@@ -72,11 +68,11 @@ std::array<double, 3> factor_of(const KeptValues& values, Parameter factor) {
 void apply_factors(const KeptValues& values, Parameter parameter, ParameterField& field, int threads) {
   if (parameter != kAlbedo && parameter != kNormal) return;
   const auto factor = factor_of(values, parameter == kAlbedo ? kAlbedoTint : kNormalScale);
-  if (factor != std::array<double, 3>{1, 1, 1}) material::multiply(field, factor, threads);
+  if (factor != std::array<double, 3>{1, 1, 1}) multiply(field, factor, threads);
 }
 
 BlendSpace space_of(Parameter parameter) {
-  return material::facts_of(parameter).blend;
+  return facts_of(parameter).blend;
 }
 
 Result<ParameterField> built_field(const MapSet& set, Parameter parameter, int threads) {
@@ -90,13 +86,13 @@ Result<ParameterField> built_field(const MapSet& set, Parameter parameter, int t
 
 // A mask of any size over the whole grid.
 ParameterField stretched(const ParameterField& mask, Size size, bool wraps, int threads) {
-  if (!mask.is_map() || mask.map.size() == size) return material::copy_of(mask);
-  return material::fitted(mask, BlendSpace::kLinear, {.wraps = wraps}, size, threads);
+  if (!mask.is_map() || mask.map.size() == size) return copy_of(mask);
+  return fitted(mask, BlendSpace::kLinear, {.wraps = wraps}, size, threads);
 }
 
 // The source of a parameter in a built material.
 std::string built_source(const MapSet& set, Parameter parameter) {
-  const char* name = material::facts_of(parameter).name;
+  const char* name = facts_of(parameter).name;
   const Json& parameters = set.document["parameters"];
   if (parameters.contains(name)) return parameters[name].value("source", "assumed");
   const std::string map = parameter == kHeight                                      ? "height"
@@ -112,7 +108,7 @@ std::string built_source(const MapSet& set, Parameter parameter) {
 bool tells_roughness(const MapSet& set) {
   const auto inputs = set.document.find("inputs");
   if (inputs == set.document.end()) return true;
-  const char* name = material::facts_of(kRoughness).name;
+  const char* name = facts_of(kRoughness).name;
   const auto says = [&](const char* table) {
     return inputs->contains(table) && (*inputs)[table].contains(name);
   };
@@ -129,7 +125,7 @@ Result<MaterialStack> MaterialStack::open(const MaterialNode& node, std::vector<
 
 Result<ParameterField> MaterialStack::table_value(const char* table, const KeptValues& values,
                                                   Parameter parameter) const {
-  const material::ParameterFacts& facts = material::facts_of(parameter);
+  const ParameterFacts& facts = facts_of(parameter);
   const auto found = values.find(facts.name);
   if (found == values.end()) return typed_field(parameter, facts.otherwise);
   const std::string key = fmt::format("{}.{}", table, facts.name);
@@ -156,8 +152,7 @@ bool MaterialStack::reaches(std::size_t i, Parameter parameter) const {
   const auto only = values.find("only");
   if (only == values.end()) return true;
   const auto names = [&](Parameter each) {
-    return std::ranges::find(only->second.value, Json(material::facts_of(each).name)) !=
-           only->second.value.end();
+    return std::ranges::find(only->second.value, Json(facts_of(each).name)) != only->second.value.end();
   };
   return names(parameter) || (parameter == kAnisotropy && names(kAnisotropyDeg));
 }
@@ -178,17 +173,16 @@ Result<void> MaterialStack::lay_layer(std::size_t i, Parameter parameter, Parame
     const auto found = values.find(key);
     return found == values.end() ? std::string(otherwise) : found->second.value.get<std::string>();
   };
-  const material::LayOptions options = {
-      .blend = *material::layer_blend_named(word("blend", "replace")),
-      .normals = *material::normal_blend_named(word("normals", "add-slopes")),
-      .alpha = values.contains("alpha") ? values.at("alpha").value.get<double>() : 1,
-      .threads = threads_};
+  const LayOptions options = {.blend = *layer_blend_named(word("blend", "replace")),
+                              .normals = *normal_blend_named(word("normals", "add-slopes")),
+                              .alpha = values.contains("alpha") ? values.at("alpha").value.get<double>() : 1,
+                              .threads = threads_};
   const Result<ParameterField> read = built_field(layers_[i], parameter, threads_);
   if (!read) return read.error();
-  ParameterField layer = material::fitted(*read, space_of(parameter), *node_->fits[i], node_->size, threads_);
+  ParameterField layer = fitted(*read, space_of(parameter), *node_->fits[i], node_->size, threads_);
   if (parameter == kAlbedo && values.contains("tint"))
-    material::multiply(layer, three(values.at("tint").value, 1), threads_);
-  return material::lay(parameter, below, layer, masks_[i], options);
+    multiply(layer, three(values.at("tint").value, 1), threads_);
+  return lay(parameter, below, layer, masks_[i], options);
 }
 
 Result<void> MaterialStack::put_over(Parameter parameter, ParameterField& field) const {
@@ -215,7 +209,7 @@ Result<ParameterField> MaterialStack::mask_of(std::size_t i, const ParameterFiel
   const Json& rule = found->second.value;
   if (rule.contains("value")) return ParameterField::same(rule["value"].get<double>());
   const std::string key = "layer." + layer.name + ".mask";
-  material::MaskLevels levels;
+  MaskLevels levels;
   ParameterField mask;
   if (rule.contains("map")) {
     Result<ParameterField> read = read_mask(node_->maps.at(key), 0, found->second.from + ": " + key);
@@ -223,20 +217,20 @@ Result<ParameterField> MaterialStack::mask_of(std::size_t i, const ParameterFiel
     mask = stretched(*read, node_->size, node_->is_tile, threads_);
   } else if (rule["kind"] == "cavity") {
     Result<ParameterField> cavity =
-        material::cavity_mask(height_mm, {.mm_per_pixel = node_->mm_per_pixel(),
-                                          .radius_mm = rule.value("radius_mm", kMaskRadius_mm),
-                                          .range_mm = rule.value("range_mm", 0.0),
-                                          .is_tile = node_->is_tile,
-                                          .threads = threads_});
+        cavity_mask(height_mm, {.mm_per_pixel = node_->mm_per_pixel(),
+                                .radius_mm = rule.value("radius_mm", kMaskRadius_mm),
+                                .range_mm = rule.value("range_mm", 0.0),
+                                .is_tile = node_->is_tile,
+                                .threads = threads_});
     if (!cavity) return cavity;
     mask = std::move(*cavity);
     // Deep is full, and what lies level has none.
     levels = {.zero = 0.5, .one = 0};
   } else {
-    mask = material::height_mask(height_mm, rule["at_mm"].get<double>(), rule.value("soft_mm", 0.0));
+    mask = height_mask(height_mm, rule["at_mm"].get<double>(), rule.value("soft_mm", 0.0));
   }
   if (rule.contains("levels")) levels = {rule["levels"][0].get<double>(), rule["levels"][1].get<double>()};
-  if (Result<void> ok = material::level(mask, levels); !ok) {
+  if (Result<void> ok = level(mask, levels); !ok) {
     Error error = std::move(ok).error();
     error.kind = ErrorKind::kBadData;
     error.where = found->second.from + ": " + key;
@@ -268,7 +262,7 @@ Result<ParameterField> MaterialStack::composed(Parameter parameter) const {
 }
 
 std::string MaterialStack::source(Parameter parameter) const {
-  const char* name = material::facts_of(parameter).name;
+  const char* name = facts_of(parameter).name;
   const auto of_table = [&](const std::string& table) {
     const auto map = node_->maps.find(table + "." + name);
     return map == node_->maps.end() ? std::string("assumed") : map->second.source;
@@ -293,7 +287,7 @@ Result<ParameterField> MaterialStack::weights() const {
     Result<ParameterField> plane = read_mask(map->second, p, where);
     if (!plane) return plane;
     ParameterField fit = stretched(*plane, node_->size, node_->is_tile, threads_);
-    material::clamp_to(fit, 0, 1);
+    clamp_to(fit, 0, 1);
     for (int y = 0; y < node_->size.height; ++y) {
       for (int x = 0; x < node_->size.width; ++x)
         planes(x, y, static_cast<int>(p)) = static_cast<float>(fit.at(x, y));
@@ -302,4 +296,4 @@ Result<ParameterField> MaterialStack::weights() const {
   return ParameterField::of(std::move(planes));
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

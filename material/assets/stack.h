@@ -9,7 +9,7 @@
 #include "material/assets/tree.h"
 #include "material/layers/field.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// A material's parameters, each composed when it is asked for: its own values, layers on them, what holds
 /// over all. Only the masks are kept meanwhile.
@@ -20,31 +20,30 @@ class MaterialStack {
 
   /// Slopes of a normal (2 planes); kAnisotropy as an axis (2 planes), which kAnisotropyDeg is a part of. Not
   /// of the kind kFactor. The same bytes for any number of threads. Errors of read_field().
-  Result<material::ParameterField> composed(material::Parameter parameter) const;
+  Result<ParameterField> composed(Parameter parameter) const;
 
   /// Where its numbers come from: of one place as it says, of several "derived", unless all are typed.
-  std::string source(material::Parameter parameter) const;
+  std::string source(Parameter parameter) const;
 
   /// Planes R, G, B of weights of the layers at run time; without a map none.
-  Result<material::ParameterField> weights() const;
+  Result<ParameterField> weights() const;
 
  private:
   MaterialStack(const MaterialNode& node, std::vector<MapSet> layers, int threads)
       : node_(&node), layers_(std::move(layers)), threads_(threads) {}
-  Result<material::ParameterField> own(material::Parameter parameter) const;
-  Result<material::ParameterField> table_value(const char* table, const KeptValues& values,
-                                               material::Parameter parameter) const;
-  Result<void> lay_layer(std::size_t i, material::Parameter parameter, material::ParameterField& below) const;
-  Result<void> put_over(material::Parameter parameter, material::ParameterField& field) const;
-  Result<material::ParameterField> mask_of(std::size_t i, const material::ParameterField& height_mm) const;
+  Result<ParameterField> own(Parameter parameter) const;
+  Result<ParameterField> table_value(const char* table, const KeptValues& values, Parameter parameter) const;
+  Result<void> lay_layer(std::size_t i, Parameter parameter, ParameterField& below) const;
+  Result<void> put_over(Parameter parameter, ParameterField& field) const;
+  Result<ParameterField> mask_of(std::size_t i, const ParameterField& height_mm) const;
   Result<void> find_masks();
-  bool reaches(std::size_t i, material::Parameter parameter) const;
-  bool changes(std::size_t i, material::Parameter parameter) const;
+  bool reaches(std::size_t i, Parameter parameter) const;
+  bool changes(std::size_t i, Parameter parameter) const;
 
   const MaterialNode* node_;
   std::vector<MapSet> layers_;
   int threads_;
-  std::vector<material::ParameterField> masks_;
+  std::vector<ParameterField> masks_;
 };
 
-}  // namespace weft::app
+}  // namespace weft::material

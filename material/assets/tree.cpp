@@ -11,12 +11,10 @@
 #include "core/base/product.h"
 #include "material/assets/material_keys.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
-using material::BlendSpace;
-using material::Parameter;
 
 constexpr double kSquare = 0.01;
 constexpr int kMostSide = 32768;
@@ -121,8 +119,8 @@ class TreeBuilder {
       for (const auto& [name, value] : *values) {
         if (!value.value.is_object()) continue;
         const std::string key = fmt::format("{}.{}", table, name);
-        if (Result<void> ok = keep(
-                node, key, find_map(*material::parameter_named(name), value.value, where_of(value, key)));
+        if (Result<void> ok =
+                keep(node, key, find_map(*parameter_named(name), value.value, where_of(value, key)));
             !ok)
           return ok;
       }
@@ -223,17 +221,16 @@ class TreeBuilder {
                                ? 0
                                : static_cast<int>(std::lround(turn->second.value.get<double>() / 90));
       if (!below.has_map) {
-        node.fits.emplace_back(material::LayerFit{.quarter_turns = ((quarters % 4) + 4) % 4});
+        node.fits.emplace_back(LayerFit{.quarter_turns = ((quarters % 4) + 4) % 4});
         continue;
       }
-      Result<material::LayerFit> fit =
-          material::fit_layer({.layer_mm = below.size_mm.value_or(std::array<double, 2>{}),
-                               .below_mm = node.size_mm.value_or(std::array<double, 2>{}),
-                               .repeat_mm = pair_of(layer, "tile_mm"),
-                               .offset_mm = pair_of(layer, "offset_mm"),
-                               .quarter_turns = quarters,
-                               .below = node.size},
-                              node.is_tile);
+      Result<LayerFit> fit = fit_layer({.layer_mm = below.size_mm.value_or(std::array<double, 2>{}),
+                                        .below_mm = node.size_mm.value_or(std::array<double, 2>{}),
+                                        .repeat_mm = pair_of(layer, "tile_mm"),
+                                        .offset_mm = pair_of(layer, "offset_mm"),
+                                        .quarter_turns = quarters,
+                                        .below = node.size},
+                                       node.is_tile);
       if (!fit) {
         Error error = unfit(node, "[[layer]] " + layer.name, fit.error().why);
         error.remedy = fit.error().remedy;
@@ -417,4 +414,4 @@ std::vector<fs::path> files_of(const MaterialTree& tree) {
   return {files.begin(), files.end()};
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

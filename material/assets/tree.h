@@ -17,7 +17,7 @@
 #include "material/assets/resolve.h"
 #include "material/layers/fit.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// Raised whenever the bytes of a built material may change.
 inline constexpr int kMaterialBuilder = 2;
@@ -38,8 +38,8 @@ struct MaterialNode {
   bool has_relief = false;  ///< its height does
   std::map<std::string, MapFile> maps =
       {};  ///< by "surface.normal", "over.albedo", "layer.dust.mask", "runtime.weights"
-  std::vector<std::size_t> layers = {}, runtime = {};        ///< nodes of their materials
-  std::vector<std::optional<material::LayerFit>> fits = {};  ///< of each layer that has a map
+  std::vector<std::size_t> layers = {}, runtime = {};  ///< nodes of their materials
+  std::vector<std::optional<LayerFit>> fits = {};      ///< of each layer that has a map
 
   /// The side of a pixel; 0 where the size is not known.
   double mm_per_pixel() const { return size_mm ? (*size_mm)[0] / size.width : 0; }
@@ -68,4 +68,4 @@ std::vector<std::filesystem::path> files_of(const MaterialTree& tree);
 /// its parent, an ellipse a map.
 std::string graph_of(const MaterialTree& tree);
 
-}  // namespace weft::app
+}  // namespace weft::material

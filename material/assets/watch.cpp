@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 // Size, time and number of a file; zeros where it is not there.
@@ -62,4 +62,4 @@ void watch_materials(const WatchOptions& options, const JobContext& context,
   }
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -7,7 +7,7 @@
 #include "core/base/result.h"
 #include "material/assets/build.h"
 
-namespace weft::app {
+namespace weft::material {
 
 struct WatchOptions {
   BuildOptions build;
@@ -20,4 +20,4 @@ struct WatchOptions {
 void watch_materials(const WatchOptions& options, const JobContext& context,
                      const std::function<void(const Result<BuildReport>&)>& tell);
 
-}  // namespace weft::app
+}  // namespace weft::material

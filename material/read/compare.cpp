@@ -15,7 +15,7 @@
 #include "core/solve/solve.h"
 #include "material/read/compared_map.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -96,7 +96,7 @@ Error nothing_counts(const fs::path& tested) {
           "no pixel is inside the mask, finite and solved", "check the mask and that both files are maps"};
 }
 
-Result<NormalComparison> compare_as_normals(const Pair& pair) {
+Result<solve::NormalComparison> compare_as_normals(const Pair& pair) {
   const Result<Triples> tested = pair.tested.normals();
   if (!tested) return tested.error();
   const Result<Triples> truth = pair.truth.normals();
@@ -109,7 +109,7 @@ Result<NormalComparison> compare_as_normals(const Pair& pair) {
     flipped_deg += angle_deg({a[0], -a[1], a[2]}, n);
   });
   if (angles.empty()) return nothing_counts(pair.tested.file);
-  NormalComparison comparison = summarize(angles);
+  solve::NormalComparison comparison = solve::summarize(angles);
   comparison.flipped_mean_deg = flipped_deg / static_cast<double>(angles.size());
   return comparison;
 }
@@ -204,11 +204,11 @@ Result<MapComparison> compare_maps(const fs::path& tested, const fs::path& truth
                                         : as_any(compare_as_numbers(*pair));
 }
 
-Result<NormalComparison> compare_normals(const fs::path& tested, const fs::path& truth,
-                                         const fs::path& mask) {
+Result<solve::NormalComparison> compare_normals(const fs::path& tested, const fs::path& truth,
+                                                const fs::path& mask) {
   const Result<MapComparison> compared = compare_maps(tested, truth, mask, ComparedKind::kNormal);
   if (!compared) return compared.error();
-  return std::get<NormalComparison>(*compared);
+  return std::get<solve::NormalComparison>(*compared);
 }
 
 Result<AlbedoComparison> compare_albedo(const fs::path& tested, const fs::path& truth, const fs::path& mask) {
@@ -217,4 +217,4 @@ Result<AlbedoComparison> compare_albedo(const fs::path& tested, const fs::path& 
   return std::get<AlbedoComparison>(*compared);
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

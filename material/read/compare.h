@@ -11,7 +11,7 @@
 #include "core/base/result.h"
 #include "solve/files/normal_comparison.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// Relative differences of two albedo maps over R, G, B of the pixels that count.
 struct AlbedoComparison {
@@ -28,7 +28,7 @@ struct NumberComparison {
 };
 
 enum class ComparedKind { kNormal, kAlbedo, kNumber };
-using MapComparison = std::variant<NormalComparison, AlbedoComparison, std::vector<NumberComparison>>;
+using MapComparison = std::variant<solve::NormalComparison, AlbedoComparison, std::vector<NumberComparison>>;
 
 /// Compares `tested` with `truth`, of equal size, as what they are (material/read/file_meaning.h): normals by
 /// names of channels, an export.json or unit lengths, colours by those, by tags of the format or by the
@@ -40,11 +40,11 @@ using MapComparison = std::variant<NormalComparison, AlbedoComparison, std::vect
 Result<MapComparison> compare_maps(const std::filesystem::path& tested, const std::filesystem::path& truth,
                                    const std::filesystem::path& mask, std::optional<ComparedKind> kind = {});
 /// The same of maps that are known to be normals, or albedo.
-Result<NormalComparison> compare_normals(const std::filesystem::path& tested,
-                                         const std::filesystem::path& truth,
-                                         const std::filesystem::path& mask);
+Result<solve::NormalComparison> compare_normals(const std::filesystem::path& tested,
+                                                const std::filesystem::path& truth,
+                                                const std::filesystem::path& mask);
 Result<AlbedoComparison> compare_albedo(const std::filesystem::path& tested,
                                         const std::filesystem::path& truth,
                                         const std::filesystem::path& mask);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -215,4 +215,4 @@ Result<ComparedKind> kind_of_both(const ComparedMap& tested, const ComparedMap& 
                "say --kind normal or --kind albedo"};
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -15,7 +15,7 @@
 
 // One of two maps that are compared.
 
-namespace weft::app {
+namespace weft::material {
 
 /// How sure it is that a map is of a kind.
 enum class Likely { kNo, kMaybe, kYes };
@@ -46,4 +46,4 @@ Result<ComparedMap> read_compared(const std::filesystem::path& file);
 /// The kind that both maps are, surely at least one of them. kUsage where that is none or more than one.
 Result<ComparedKind> kind_of_both(const ComparedMap& tested, const ComparedMap& truth);
 
-}  // namespace weft::app
+}  // namespace weft::material

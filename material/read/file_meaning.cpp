@@ -16,7 +16,7 @@
 #include "exchange/presets/export_facts.h"
 #include "exchange/presets/pack.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -61,15 +61,15 @@ Result<ImageFileInfo> info_of_file(const fs::path& file) {
 // --- export.json
 
 // The entry of a file in the nearest export.json above it.
-std::optional<ExportedTexture> listing_of(const fs::path& file) {
+std::optional<exchange::ExportedTexture> listing_of(const fs::path& file) {
   const fs::path path = fs::absolute(file).lexically_normal();
   fs::path folder = path.parent_path();
   for (int i = 0; i < kMostFolders; ++i, folder = folder.parent_path()) {
-    if (!is_there(folder / kExportProduct.document)) continue;
-    const Result<ExportFacts> facts = read_export(folder);
+    if (!is_there(folder / exchange::kExportProduct.document)) continue;
+    const Result<exchange::ExportFacts> facts = exchange::read_export(folder);
     if (!facts) return std::nullopt;
     const std::string name = path.lexically_relative(folder).generic_string();
-    const auto found = std::ranges::find(facts->files, name, &ExportedTexture::file);
+    const auto found = std::ranges::find(facts->files, name, &exchange::ExportedTexture::file);
     return found == facts->files.end() ? std::nullopt : std::optional(*found);
   }
   return std::nullopt;
@@ -82,13 +82,13 @@ std::size_t index_among(const Names& names, const std::string& word) {
 }
 
 // Whether the file is still the one that is listed; blocks are padded from its size.
-bool is_as_listed(const ExportedTexture& listed, const ImageFileInfo& info) {
+bool is_as_listed(const exchange::ExportedTexture& listed, const ImageFileInfo& info) {
   const bool is_alike =
       info.size == (info.format == kDds ? exchange::whole_blocks(listed.size) : listed.size);
   return is_alike && listed.channels.size() <= info.channels.size();
 }
 
-void take_listing(const ExportedTexture& listed, FileMeaning& meaning) {
+void take_listing(const exchange::ExportedTexture& listed, FileMeaning& meaning) {
   meaning.is_listed = true;
   meaning.direction =
       static_cast<exchange::NormalDirection>(index_among(exchange::kNormalDirectionNames, listed.direction));
@@ -98,7 +98,7 @@ void take_listing(const ExportedTexture& listed, FileMeaning& meaning) {
   }
   const bool is_srgb = listed.color == ColorSpace::kSrgb;
   for (std::size_t c = 0; c < listed.channels.size(); ++c) {
-    const ExportedChannel& written = listed.channels[c];
+    const exchange::ExportedChannel& written = listed.channels[c];
     const exchange::Channel* channel = exchange::channel_named(written.name);
     if (channel == nullptr) continue;
     ChannelMeaning& of = meaning.channels[c];
@@ -174,7 +174,7 @@ Result<FileMeaning> meaning_of(const fs::path& file) {
   if (!info) return std::move(info).error();
   FileMeaning meaning = {.info = std::move(*info), .channels = {}};
   meaning.channels.resize(meaning.info.channels.size());
-  if (const std::optional<ExportedTexture> listed = listing_of(file);
+  if (const std::optional<exchange::ExportedTexture> listed = listing_of(file);
       listed && is_as_listed(*listed, meaning.info)) {
     meaning.info.size = listed->size;
     take_listing(*listed, meaning);
@@ -229,4 +229,4 @@ bool are_unit_normals(const Planes& planes, bool packed) {
   return pixels > 0 && 100 * units >= 98 * pixels;
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -16,7 +16,7 @@
 // What the numbers of an image file mean: by the export.json of weft that lists it, else by the names of its
 // channels and by what its format says of colours.
 
-namespace weft::app {
+namespace weft::material {
 
 /// What one channel of a file holds.
 struct ChannelMeaning {
@@ -56,4 +56,4 @@ bool are_packed_normals(const std::array<View<const float>, 3>& planes);
 /// of 0.9 to 1.1 and look upwards. Black pixels say nothing.
 bool are_unit_normals(const std::array<View<const float>, 3>& planes, bool packed);
 
-}  // namespace weft::app
+}  // namespace weft::material

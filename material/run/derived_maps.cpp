@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "material/run/derived_maps.h"
 
-namespace weft::app {
+namespace weft::material {
 
 const std::vector<DerivedMap>& derived_maps() {
   static const std::vector<DerivedMap> maps = {
@@ -19,4 +19,4 @@ const std::vector<DerivedMap>& derived_maps() {
   return maps;
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

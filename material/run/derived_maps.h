@@ -6,7 +6,7 @@
 #include "core/base/result.h"
 #include "material/run/map_work.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// What can be derived from a surface.
 struct DerivedMap {
@@ -33,4 +33,4 @@ Result<void> make_mips(MapWork& work);
 Result<void> make_detail(MapWork& work);
 Result<void> make_opacity(MapWork& work);
 
-}  // namespace weft::app
+}  // namespace weft::material

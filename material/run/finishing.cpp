@@ -24,13 +24,9 @@
 #include "material/run/surface_files.h"
 #include "report/preview.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
-using material::Lattice;
-using material::LatticeKind;
-using material::Surface;
-using material::Vec2;
 using report::Picture;
 
 constexpr int kYarnsShown = 28, kYarnsApart = 4, kSide = 720;
@@ -130,7 +126,7 @@ class Finisher {
   }
 
   // Looked for once in the cloth as it stands, or again as somebody says that its yarns lie.
-  Result<void> find_lattice(const material::SaidYarns& said = {}) {
+  Result<void> find_lattice(const SaidYarns& said = {}) {
     const bool is_said = said.turn_deg || said.x_px > 0 || said.y_px > 0;
     if (lattice_ && !is_said) return {};
     Result<Lattice> lattice = material::find_lattice(surface_, {.said = said, .threads = context_.threads});
@@ -146,28 +142,28 @@ class Finisher {
   }
 
   Result<Json> flatten(const Json& options) {
-    material::FlattenOptions flatten;
+    FlattenOptions flatten;
     const auto method = std::ranges::find(kFlattenNames, options["by"].get<std::string>());
-    flatten.method = static_cast<material::FlattenMethod>(method - kFlattenNames.begin());
+    flatten.method = static_cast<FlattenMethod>(method - kFlattenNames.begin());
     flatten.degree = options["degree"].get<int>();
     flatten.cut_mm = options["cut_mm"].get<double>();
     flatten.mm_per_pixel = surface_.mm_per_pixel;
     flatten.sigma_deg = options["always"].get<bool>() ? 0 : input_.slow_sigma_deg;
     flatten.threads = context_.threads;
-    if (flatten.method == material::FlattenMethod::kRepeat) {
+    if (flatten.method == FlattenMethod::kRepeat) {
       if (Result<void> ok = find_lattice(); !ok) return std::move(ok).error();
-      const material::Cell& cell = lattice_->colour;
+      const Cell& cell = lattice_->colour;
       if (lattice_->kind == LatticeKind::kRepeat)
-        flatten.repeat = material::Repeat{cell.a.x, -cell.a.y, cell.b.x, -cell.b.y};
+        flatten.repeat = Repeat{cell.a.x, -cell.a.y, cell.b.x, -cell.b.y};
       else
-        flatten.method = material::FlattenMethod::kHann;
+        flatten.method = FlattenMethod::kHann;
     }
-    const Result<material::SlowSlopes> slow = material::slow_slopes(
-        surface_.slope.plane(0), surface_.slope.plane(1), surface_.status.plane(), flatten);
+    const Result<SlowSlopes> slow =
+        slow_slopes(surface_.slope.plane(0), surface_.slope.plane(1), surface_.status.plane(), flatten);
     if (!slow) return slow.error();
     material::flatten(*slow, surface_.status.plane(), surface_.slope.plane(0), surface_.slope.plane(1),
                       context_.threads);
-    if (slow->acts) facts.removed = material::removed_slopes(*slow, context_.threads);
+    if (slow->acts) facts.removed = removed_slopes(*slow, context_.threads);
     return Json{{"acts", slow->acts},
                 {"method", kFlattenNames[static_cast<std::size_t>(slow->method)]},
                 {"degree_found", slow->degree},
@@ -179,14 +175,14 @@ class Finisher {
 
   Result<Json> straighten(const Recipe& recipe, std::size_t at) {
     const Json& said = recipe.steps[at].options;
-    material::SaidYarns yarns;
+    SaidYarns yarns;
     if (!said["turn_deg"].is_null()) yarns.turn_deg = said["turn_deg"].get<double>();
     yarns.x_px = said["yarn_px"][0].get<double>() / input_.coarser;
     yarns.y_px = said["yarn_px"][1].get<double>() / input_.coarser;
     if (Result<void> ok = find_lattice(yarns); !ok) return std::move(ok).error();
-    Json found = {{"acts", false}, {"kind", material::name_of(lattice_->kind)}};
+    Json found = {{"acts", false}, {"kind", name_of(lattice_->kind)}};
     if (lattice_->kind != LatticeKind::kRepeat) {
-      warn("NO_REPEAT", fmt::format("the cloth was not straightened: {}", material::words_of(lattice_->kind)),
+      warn("NO_REPEAT", fmt::format("the cloth was not straightened: {}", words_of(lattice_->kind)),
            "nothing, if it has none; else scan more of it");
       is_left_turned_ = true;
       return found;
@@ -197,16 +193,16 @@ class Finisher {
                   {"yarn_share", lattice_->yarn_share},
                   {"colours_repeat", lattice_->colours_repeat},
                   {"strength", lattice_->strength}});
-    if (!yarns.turn_deg && material::is_to_be_asked(*lattice_)) {
+    if (!yarns.turn_deg && is_to_be_asked(*lattice_)) {
       found["picture"] = ask(at);
       return found;
     }
-    material::StraightenOptions options;
+    StraightenOptions options;
     const std::array<int, 2> repeats = repeats_wanted(recipe, at);
     options.repeats_x = repeats[0];
     options.repeats_y = repeats[1];
     options.threads = context_.threads;
-    Result<material::Straightened> straight = material::straighten(surface_, *lattice_, options);
+    Result<Straightened> straight = material::straighten(surface_, *lattice_, options);
     if (!straight) return std::move(straight).error();
     found.update({{"acts", true},
                   {"repeats", {straight->repeats_x, straight->repeats_y}},
@@ -214,7 +210,7 @@ class Finisher {
                   {"mm_per_pixel", {straight->mm_per_pixel_x, straight->mm_per_pixel_y}},
                   {"largest_pull_mm", straight->largest_pull_mm},
                   {"rms_pull_mm", straight->rms_pull_mm}});
-    tile_ = material::tile_of(*straight);
+    tile_ = tile_of(*straight);
     surface_ = std::move(straight->surface);
     lattice_.reset();
     is_left_turned_ = false;
@@ -232,7 +228,7 @@ class Finisher {
          fmt::format(
              "the cloth was not straightened: its yarns seem to be turned by {:.2f} degrees and sheared by "
              "{:.2f}, and beyond {:g} and {:g} those may be diagonals",
-             turn_deg, skew_deg, material::kMostTurn_deg, material::kMostSkew_deg),
+             turn_deg, skew_deg, kMostTurn_deg, kMostSkew_deg),
          fmt::format(
              "look at {}; where its lines lie along the yarns give the recipe straighten = {{ turn_deg = "
              "{:.2f}, yarn_px = [{:.2f}, {:.2f}] }}, else what is true",
@@ -242,15 +238,15 @@ class Finisher {
   }
 
   Result<Json> tile() {
-    material::TilingOptions options = tile_.value_or(material::TilingOptions());
+    TilingOptions options = tile_.value_or(TilingOptions());
     options.threads = context_.threads;
     if (!tile_)
       warn("NOT_STRAIGHTENED", "the tile is cut where the cloth is closest to itself, without its repeat",
            is_left_turned_ ? "do what is said of straightening"
                            : "put the step straighten before the step tile");
-    Result<material::Tile> cut = material::tile(surface_, options);
+    Result<Tile> cut = material::tile(surface_, options);
     if (!cut) return std::move(cut).error();
-    const auto seam = [](const material::Seam& s) {
+    const auto seam = [](const Seam& s) {
       return Json{{"overlap_px", s.overlap_px},
                   {"wrap_step_slope", s.wrap_step_slope},
                   {"wrap_step_albedo", s.wrap_step_albedo},
@@ -275,11 +271,10 @@ class Finisher {
 
   Result<Json> crop(const Json& options) {
     const double mm = surface_.mm_per_pixel;
-    material::CropOptions crop = {options["left_mm"], options["top_mm"], options["width_mm"],
-                                  options["height_mm"]};
+    CropOptions crop = {options["left_mm"], options["top_mm"], options["width_mm"], options["height_mm"]};
     if (crop.width_mm == 0) crop.width_mm = mm * surface_.size().width - crop.left_mm;
     if (crop.height_mm == 0) crop.height_mm = mm * surface_.size().height - crop.top_mm;
-    Result<material::Cropped> cropped = material::crop(surface_, crop);
+    Result<Cropped> cropped = material::crop(surface_, crop);
     if (!cropped) return std::move(cropped).error();
     const Rect& part = cropped->part_px;
     surface_ = std::move(cropped->surface);
@@ -288,33 +283,33 @@ class Finisher {
   }
 
   // The repeats that spots are filled from: of a straightened cloth upright, else as they are found.
-  Result<material::Cell> cell() {
-    if (tile_) return material::Cell{{tile_->repeat_x_px, 0}, {0, tile_->repeat_y_px}};
+  Result<Cell> cell() {
+    if (tile_) return Cell{{tile_->repeat_x_px, 0}, {0, tile_->repeat_y_px}};
     if (Result<void> ok = find_lattice(); !ok) return std::move(ok).error();
     if (lattice_->kind == LatticeKind::kRepeat) return lattice_->axes;
     return Error{ErrorKind::kBadData, "spots are filled from other repeats", "repair",
-                 std::string(material::words_of(lattice_->kind)), "crop the spots away"};
+                 std::string(words_of(lattice_->kind)), "crop the spots away"};
   }
 
   Result<Json> repair(const Json& options) {
     if (options["spots"].empty()) return Json{{"filled", Json::array()}};
-    const Result<material::Cell> cell = this->cell();
+    const Result<Cell> cell = this->cell();
     if (!cell) return cell.error();
-    material::RepairOptions repair;
+    RepairOptions repair;
     repair.cell = *cell;
     repair.threads = context_.threads;
     for (const Json& spot : options["spots"]) {
-      material::Spot place;
+      Spot place;
       place.x_mm = spot["x_mm"];
       place.y_mm = spot["y_mm"];
       place.radius_mm = spot["radius_mm"];
       repair.spots.push_back(place);
     }
-    Result<material::Repaired> repaired = material::repair(std::move(surface_), repair);
+    Result<Repaired> repaired = material::repair(std::move(surface_), repair);
     if (!repaired) return std::move(repaired).error();
     surface_ = std::move(repaired->surface);
     Json filled = Json::array();
-    for (const material::Filled& each : repaired->filled) {
+    for (const Filled& each : repaired->filled) {
       filled.push_back({{"repeats", {each.repeats_a, each.repeats_b}},
                         {"source_px", {each.spot.source_px->x, each.spot.source_px->y}},
                         {"mismatch", each.mismatch},
@@ -324,10 +319,10 @@ class Finisher {
   }
 
   Result<Json> color(const Json& options) {
-    material::ColorOptions color;
+    ColorOptions color;
     color.white_gains = options["gain"].get<std::array<double, 3>>();
     color.exposure = std::exp2(options["exposure"].get<double>());
-    Result<material::Colored> colored = material::color(std::move(surface_), color);
+    Result<Colored> colored = material::color(std::move(surface_), color);
     if (!colored) return std::move(colored).error();
     surface_ = std::move(colored->surface);
     if (colored->share_above_white > 0)
@@ -348,10 +343,10 @@ class Finisher {
   }
 
   Result<Json> detail() {
-    material::DetailOptions options;
+    DetailOptions options;
     if (tile_) options.repeat = {tile_->repeat_x_px, tile_->repeat_y_px};
     options.threads = context_.threads;
-    Result<material::DetailLayer> layer = material::detail_layer(surface_, {}, options);
+    Result<DetailLayer> layer = detail_layer(surface_, {}, options);
     if (!layer) return std::move(layer).error();
     surface_.slope = std::move(layer->slope);
     surface_.albedo = std::move(layer->albedo);
@@ -362,7 +357,7 @@ class Finisher {
   }
 
   // A joint that is sharper or softer than the cloth around it is seen.
-  void judge(std::string_view axis, const material::Seam& seam) {
+  void judge(std::string_view axis, const Seam& seam) {
     const auto is_seen = [](double energy) { return energy < kLeastEnergy || energy > kMostEnergy; };
     if (!is_seen(seam.gradient_slope) && !is_seen(seam.gradient_albedo)) return;
     warn("SEAM_SEEN",
@@ -380,8 +375,8 @@ class Finisher {
   const FinishingInput& input_;
   const JobContext& context_;
   std::optional<Lattice> lattice_;
-  std::optional<material::TilingOptions> tile_;  // of a cloth that was straightened
-  bool is_left_turned_ = false;                  // straightening was told to, and said why not
+  std::optional<TilingOptions> tile_;  // of a cloth that was straightened
+  bool is_left_turned_ = false;        // straightening was told to, and said why not
 };
 
 }  // namespace
@@ -403,4 +398,4 @@ Result<FinishingFacts> finish_surface(Surface& surface, const Recipe& recipe, co
   return std::move(finisher.facts);
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -13,7 +13,7 @@
 #include "material/surface.h"
 #include "report/drawing.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// What is known of the cloth beside its maps.
 struct FinishingInput {
@@ -40,7 +40,7 @@ struct FinishingFacts {
 
 /// Does what the recipe says to all maps of a surface together. Errors: of the steps, with their number;
 /// kInterrupted.
-Result<FinishingFacts> finish_surface(material::Surface& surface, const Recipe& recipe,
-                                      const FinishingInput& input, const JobContext& context);
+Result<FinishingFacts> finish_surface(Surface& surface, const Recipe& recipe, const FinishingInput& input,
+                                      const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -21,10 +21,8 @@
 #include "material/run/surface_files.h"
 #include "solver/height/tiled_height.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
-
-using material::Surface;
 
 // Less hidden than this is hidden from nobody who looks.
 constexpr double kOpenFrom = 0.995;
@@ -71,7 +69,6 @@ void scale(View<float> plane, double factor) {
 
 // What of a highlight comes through the cone of bent_normal.exr: the same table for every cloth.
 Result<void> write_cone_table(MapWork& work) {
-  using material::SpecularOcclusion;
   const SpecularOcclusion table;
   Image<float> share({SpecularOcclusion::kCones, SpecularOcclusion::kRoughness * SpecularOcclusion::kAngles});
   const float* next = table.values().data();
@@ -98,7 +95,7 @@ Result<void> write_cone_table(MapWork& work) {
 Result<void> find_height(MapWork& work) {
   if (!work.height_mm.empty()) return {};
   if (work.surface.is_tile && work.options.height == solver::HeightMethod::kAutomatic) {
-    material::PeriodicHeight periodic = material::periodic_height(work.surface.slope, work.context.threads);
+    PeriodicHeight periodic = periodic_height(work.surface.slope, work.context.threads);
     scale(periodic.height.plane(), work.surface.mm_per_pixel);
     work.height_mm = std::move(periodic.height);
     return {};
@@ -122,16 +119,15 @@ Result<void> make_height(MapWork& work) {
 
 Result<void> make_curl(MapWork& work) {
   const Surface& surface = work.surface;
-  material::CurlOptions options;
+  CurlOptions options;
   options.yarn_px = work.yarn_px;
   options.is_tile = surface.is_tile;
   options.threads = work.context.threads;
-  const Result<material::Curl> curl =
-      material::curl(surface.slope.plane(0), surface.slope.plane(1), surface.sigma_deg.plane(),
-                     surface.status.plane(), options);
+  const Result<Curl> curl = material::curl(surface.slope.plane(0), surface.slope.plane(1),
+                                           surface.sigma_deg.plane(), surface.status.plane(), options);
   if (!curl) return curl.error();
   MapFacts facts = {.name = "curl", .file = "curl.exr", .unit = "sigma", .channels = {"curl"}};
-  facts.more = {{"frame_median", curl->frame_median},     {"limit", material::kCurlLimit},
+  facts.more = {{"frame_median", curl->frame_median},     {"limit", kCurlLimit},
                 {"flagged_share", curl->flagged_share},   {"specular_share", curl->specular_share},
                 {"shadowed_share", curl->shadowed_share}, {"window_px", curl->window_px}};
   if (curl->is_of_no_surface()) {
@@ -151,12 +147,12 @@ Result<void> make_curl(MapWork& work) {
 Result<void> find_openness(MapWork& work) {
   if (!work.openness.empty()) return {};
   if (Result<void> ok = find_height(work); !ok) return ok;
-  material::OcclusionOptions options;
+  OcclusionOptions options;
   options.mm_per_pixel = work.surface.mm_per_pixel;
   options.directions = work.options.directions;
   options.is_tile = work.surface.is_tile;
   options.threads = work.context.threads;
-  Result<material::Occlusion> found = material::occlusion(work.height_mm.plane(), options);
+  Result<Occlusion> found = occlusion(work.height_mm.plane(), options);
   if (!found) return std::move(found).error();
   work.openness = std::move(found->openness);
   work.bent_normal = std::move(found->bent_normal);
@@ -180,9 +176,9 @@ Result<void> make_occlusion(MapWork& work) {
       const double openness = static_cast<double>(work.openness(x, y));
       for (int c = 0; c < 3; ++c) {
         const double albedo = std::clamp(static_cast<double>(surface.albedo(x, y, c)), 0.0, 1.0);
-        lit(x, y, c) = static_cast<float>(material::lit_share(openness, albedo));
+        lit(x, y, c) = static_cast<float>(lit_share(openness, albedo));
       }
-      cone(x, y) = static_cast<float>(material::cone_angle_deg(openness));
+      cone(x, y) = static_cast<float>(cone_angle_deg(openness));
     }
   }
   facts.file = "occlusion.exr";
@@ -199,16 +195,16 @@ Result<void> make_occlusion(MapWork& work) {
 
 Result<void> make_cavity(MapWork& work) {
   if (Result<void> ok = find_height(work); !ok) return ok;
-  material::CavityOptions options;
+  CavityOptions options;
   options.mm_per_pixel = work.surface.mm_per_pixel;
   options.radius_mm = std::max(work.options.cavity_mm, work.surface.mm_per_pixel);
   options.is_tile = work.surface.is_tile;
   options.threads = work.context.threads;
-  const Result<material::Cavity> found = material::cavity(work.height_mm.plane(), options);
+  const Result<Cavity> found = cavity(work.height_mm.plane(), options);
   if (!found) return found.error();
   MapFacts facts = {.name = "cavity", .file = "cavity.exr", .channels = {"cavity"}};
   facts.more = {{"radius_mm", options.radius_mm}, {"range_mm", found->range_mm}};
   return write_map(work, std::move(facts), {found->cavity.plane()});
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

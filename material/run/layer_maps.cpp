@@ -12,14 +12,13 @@
 #include "material/run/derived_maps.h"
 #include "material/run/surface_files.h"
 
-namespace weft::app {
+namespace weft::material {
 
 Result<void> make_detail(MapWork& work) {
   if (Result<void> ok = find_height(work); !ok) return ok;
-  material::DetailOptions options;
+  DetailOptions options;
   options.threads = work.context.threads;
-  const Result<material::DetailLayer> layer =
-      material::detail_layer(work.surface, work.height_mm.plane(), options);
+  const Result<DetailLayer> layer = detail_layer(work.surface, work.height_mm.plane(), options);
   if (!layer) return layer.error();
   const Image<float> normal = normals_of(layer->slope);
   MapFacts normals = {.name = "detail_normal", .file = "detail_normal.exr", .channels = {"X", "Y", "Z"}};
@@ -39,13 +38,13 @@ namespace {
 
 // Levels for an alpha test: as much is cut out of each as of the finest.
 Result<void> write_opacity_mips(MapWork& work, MapFacts& facts) {
-  const Result<std::vector<material::OpacityMip>> levels =
-      material::opacity_mips(work.surface.opacity.plane(), {.threads = work.context.threads});
+  const Result<std::vector<OpacityMip>> levels =
+      opacity_mips(work.surface.opacity.plane(), {.threads = work.context.threads});
   if (!levels) return levels.error();
   const std::filesystem::path folder = work.folder / "mips";
   if (Result<void> ok = make_writable_folder(folder); !ok) return ok;
   Json listed = Json::array();
-  for (const material::OpacityMip& level : *levels) {
+  for (const OpacityMip& level : *levels) {
     const WriteOptions options = {.type = SampleType::kHalf,
                                   .compression = work.compression,
                                   .pitch_mm = pitch_of_level(work.surface, level.map.size())};
@@ -65,11 +64,10 @@ Result<void> make_opacity(MapWork& work) {
     write_constant(work, std::move(facts), 1, "no light came from below, and the solver saw no hole");
     return {};
   }
-  const material::OpacityFacts& found = *work.opacity;
+  const OpacityFacts& found = *work.opacity;
   facts.file = "opacity.exr";
-  facts.source =
-      found.way == material::OpacityFacts::Way::kMarkedHoles ? MapSource::kDerived : MapSource::kMeasured;
-  facts.more = {{"way", material::name_of(found.way)},
+  facts.source = found.way == OpacityFacts::Way::kMarkedHoles ? MapSource::kDerived : MapSource::kMeasured;
+  facts.more = {{"way", name_of(found.way)},
                 {"open", found.open},
                 {"through_yarns", found.through_yarns},
                 {"is_coverage", found.is_coverage()},
@@ -79,4 +77,4 @@ Result<void> make_opacity(MapWork& work) {
   return draw_map(work, std::move(facts), {work.surface.opacity.plane()});
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

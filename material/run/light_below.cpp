@@ -16,7 +16,7 @@
 #include "capture/raw/raw_info.h"
 #include "material/table_grid.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,9 +39,9 @@ Error unfit(const Session& session, std::string why) {
 Result<Image<float>> picture_of(const Session& session, const Shot& shot, const Calibration& calibration) {
   const Result<capture::RawInfo> header = capture::read_raw_info(session.path_of(shot));
   if (!header) return header.error();
-  const Result<RawFrame> frame = read_raw_shot(session, shot, header->size);
+  const Result<RawFrame> frame = capture::read_raw_shot(session, shot, header->size);
   if (!frame) return frame.error();
-  return half_size_picture(*frame, *calibration.response);
+  return capture::half_size_picture(*frame, *calibration.response);
 }
 
 // Light from below by cell, all colours together, less the dark shot: shares of full scale.
@@ -61,7 +61,7 @@ Result<Image<float>> light_of(const Session& session, const Calibration& calibra
   return light;
 }
 
-material::TableGrid grid_of(const RectifyFacts& r) {
+TableGrid grid_of(const RectifyFacts& r) {
   return {r.size, r.mm_per_pixel, r.height_mm, r.turn_deg, r.centre_mm[0], r.centre_mm[1]};
 }
 
@@ -89,15 +89,15 @@ Image<float> share_of(const Image<float>& cloth, const Image<float>& table) {
 }
 
 // Means say the share; the nearest cell says whether it can be told.
-ThroughCloth on_grid(const Image<float>& share, const CameraModel& camera, const material::TableGrid& grid,
+ThroughCloth on_grid(const Image<float>& share, const CameraModel& camera, const TableGrid& grid,
                      int threads) {
   const Image<std::uint16_t> all_solved(share.size());
   ThroughCloth through = {Image<float>(grid.size), Image<std::uint8_t>(grid.size)};
   Image<float> nearest(grid.size);
   const std::array<View<const float>, 1> seen = {share.plane()};
   const std::array<View<float>, 1> mean_out = {through.share.plane()}, nearest_out = {nearest.plane()};
-  rectify_rows(camera, grid, material::MapKind::kValue, seen, all_solved.plane(), 0, threads, mean_out);
-  rectify_rows(camera, grid, material::MapKind::kChoice, seen, all_solved.plane(), 0, threads, nearest_out);
+  rectify_rows(camera, grid, MapKind::kValue, seen, all_solved.plane(), 0, threads, mean_out);
+  rectify_rows(camera, grid, MapKind::kChoice, seen, all_solved.plane(), 0, threads, nearest_out);
   for (int y = 0; y < grid.size.height; ++y) {
     for (int x = 0; x < grid.size.width; ++x) {
       through.saturated(x, y) = std::isinf(nearest(x, y)) ? 1 : 0;
@@ -118,7 +118,7 @@ Result<ThroughCloth> light_through_cloth(const Session& session, const fs::path&
                                          int threads) {
   if (!calibration.response || !calibration.camera)
     return unfit(session, "the calibration has no camera.json or no response.json");
-  const Result<Session> table = read_complete_session(bare);
+  const Result<Session> table = capture::read_complete_session(bare);
   if (!table) return table.error();
   if (Result<void> ok = check_alike(session, *table); !ok) return std::move(ok).error();
   const Result<Image<float>> cloth_light = light_of(session, calibration);
@@ -127,8 +127,8 @@ Result<ThroughCloth> light_through_cloth(const Session& session, const fs::path&
   if (!table_light) return table_light.error();
   if (!(cloth_light->size() == table_light->size()))
     return unfit(*table, "its photographs are of another size");
-  return on_grid(share_of(*cloth_light, *table_light), material::reduced_camera(*calibration.camera, 2),
+  return on_grid(share_of(*cloth_light, *table_light), reduced_camera(*calibration.camera, 2),
                  grid_of(rectified), threads);
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

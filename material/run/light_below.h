@@ -10,7 +10,7 @@
 #include "core/rig/session.h"
 #include "material/run/rectify.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// Whether the session has a photograph by the light below the cloth.
 bool has_light_below(const Session& session);
@@ -28,4 +28,4 @@ Result<ThroughCloth> light_through_cloth(const Session& session, const std::file
                                          const Calibration& calibration, const RectifyFacts& rectified,
                                          int threads);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -18,18 +18,18 @@
 #include "material/run/surface_files.h"
 #include "solve/files/gloss_maps.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
-using material::GlossScale;
 using solver::Lobe;
 
 // What an artist would type: that of a pile is matt, since its sheen is no lobe of GGX.
 Lobe typed_lobe(const std::string& cloth) {
-  const Lobe& named = std::ranges::find(planned_cloths(), cloth, &NamedCloth::name)->cloth.lobe;
+  const Lobe& named =
+      std::ranges::find(calibration::planned_cloths(), cloth, &calibration::NamedCloth::name)->cloth.lobe;
   if (named.family != solver::LobeFamily::kLambert && named.family != solver::LobeFamily::kCloth)
     return named;
-  return {.family = solver::LobeFamily::kGgx, .alpha = kTypedAlpha, .f0 = kTypedF0};
+  return {.family = solver::LobeFamily::kGgx, .alpha = solve::kTypedAlpha, .f0 = solve::kTypedF0};
 }
 
 double typed_alpha(const std::string& cloth) {
@@ -54,7 +54,7 @@ Image<float> on_scale(GlossScale scale, const Image<float>& alpha) {
   Image<float> values(alpha.size());
   for (int y = 0; y < alpha.height(); ++y) {
     for (int x = 0; x < alpha.width(); ++x)
-      values(x, y) = static_cast<float>(material::on_scale(scale, static_cast<double>(alpha(x, y))));
+      values(x, y) = static_cast<float>(on_scale(scale, static_cast<double>(alpha(x, y))));
   }
   return values;
 }
@@ -72,7 +72,7 @@ Image<float> tint_of(const Image<float>& lobe) {
 }
 
 // Pixels that were solved with a lobe; the others have typed values.
-double measured_share(const material::Surface& surface) {
+double measured_share(const Surface& surface) {
   std::int64_t glossy = 0;
   for (int y = 0; y < surface.size().height; ++y) {
     const std::uint16_t* row = surface.status.plane().row(y);
@@ -85,7 +85,7 @@ double measured_share(const material::Surface& surface) {
 
 Result<void> make_roughness(MapWork& work) {
   MapFacts roughness = {.name = "roughness", .source = MapSource::kMeasured};
-  roughness.more = {{"scale", material::name_of(GlossScale::kRoughness)}};
+  roughness.more = {{"scale", name_of(GlossScale::kRoughness)}};
   MapFacts specular = {.name = "specular", .unit = "share", .source = MapSource::kMeasured};
   if (work.surface.lobe.empty()) {
     const Lobe lobe = typed_lobe(work.options.cloth);
@@ -106,7 +106,7 @@ Result<void> make_roughness(MapWork& work) {
   if (!work.has_f0) {
     specular.source = MapSource::kAssumed;
     specular.more = Json::object();
-    write_constant(work, std::move(specular), kTypedF0, "typed, as the albedo has no absolute scale");
+    write_constant(work, std::move(specular), solve::kTypedF0, "typed, as the albedo has no absolute scale");
     return {};
   }
   specular.file = "specular.exr";
@@ -131,8 +131,8 @@ Result<void> make_gloss(MapWork& work) {
   if (work.surface.lobe.empty()) {
     const double alpha = typed_alpha(work.options.cloth);
     facts.source = MapSource::kAssumed;
-    facts.more = {{"blinn_phong", material::on_scale(GlossScale::kBlinnPhong, alpha)}};
-    write_constant(work, std::move(facts), material::on_scale(GlossScale::kGloss, alpha), typed_words(work));
+    facts.more = {{"blinn_phong", on_scale(GlossScale::kBlinnPhong, alpha)}};
+    write_constant(work, std::move(facts), on_scale(GlossScale::kGloss, alpha), typed_words(work));
     return {};
   }
   const Image<float> alpha = mean_alphas(work.surface.lobe);
@@ -145,13 +145,13 @@ Result<void> make_gloss(MapWork& work) {
 
 Result<void> make_mips(MapWork& work) {
   const Lobe typed = typed_lobe(work.options.cloth);
-  const Result<std::vector<material::MipLevel>> levels = material::roughness_mips(
+  const Result<std::vector<MipLevel>> levels = roughness_mips(
       work.surface, {.alpha = typed.alpha, .along = typed.along, .threads = work.context.threads});
   if (!levels) return levels.error();
   const std::filesystem::path folder = work.folder / "mips";
   if (Result<void> ok = make_writable_folder(folder); !ok) return ok;
   Json listed = Json::array();
-  for (const material::MipLevel& level : *levels) {
+  for (const MipLevel& level : *levels) {
     const std::string number = fmt::format("{:02}", level.level);
     const PixelPitch pitch_mm = pitch_of_level(work.surface, level.normal.size());
     const Result<void> normal =
@@ -173,9 +173,9 @@ Result<void> make_mips(MapWork& work) {
                     .channels = {"alpha", "alpha_along", "yarn_deg"},
                     .source = work.surface.lobe.empty() ? MapSource::kAssumed : MapSource::kDerived};
   measure(facts, levels->front().lobe.plane(0));
-  facts.more = {{"rule", material::name_of(material::MipRule::kVmf)}, {"levels", std::move(listed)}};
+  facts.more = {{"rule", name_of(MipRule::kVmf)}, {"levels", std::move(listed)}};
   work.made.push_back(std::move(facts));
   return {};
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

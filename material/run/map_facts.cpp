@@ -8,7 +8,7 @@
 
 #include "core/describe/field_json.h"
 
-namespace weft::app {
+namespace weft::material {
 
 const char* name_of(MapSource source) {
   return kMapSourceNames[static_cast<std::size_t>(source)];
@@ -68,4 +68,4 @@ void measure(MapFacts& facts, View<const float> plane) {
   facts.mean = sum / static_cast<double>(plane.size().pixels());
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

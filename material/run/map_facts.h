@@ -12,7 +12,7 @@
 #include "core/image/image.h"
 #include "core/image_io/image_io.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// How a map came to be.
 enum class MapSource {
@@ -49,4 +49,4 @@ ImageAttributes attributes_of(const MapFacts& facts, double mm_per_pixel);
 /// Fills the least, the largest and the mean value.
 void measure(MapFacts& facts, View<const float> plane);
 
-}  // namespace weft::app
+}  // namespace weft::material

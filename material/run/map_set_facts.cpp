@@ -5,7 +5,7 @@
 
 #include "core/describe/field_json.h"
 
-namespace weft::app {
+namespace weft::material {
 
 void describe(Fields& fields, MapStep& s) {
   fields.keep(s.document);
@@ -15,7 +15,7 @@ void describe(Fields& fields, MapStep& s) {
 
 void describe(Fields& fields, MapCheck& c) {
   fields.value({"name", "For programs", {}, kMustSay}, c.name);
-  fields.choice({"severity", "How grave it is", {}, kMustSay}, c.severity, material::kSeverityNames);
+  fields.choice({"severity", "How grave it is", {}, kMustSay}, c.severity, kSeverityNames);
   fields.value({"number", "What was measured", {}, kOrNull}, c.number);
   fields.value({"limit", "What it is held to, in the same unit", {}, kOrNull}, c.limit);
   fields.value({"text", "One sentence with its numbers"}, c.text);
@@ -71,4 +71,4 @@ Result<MapSetFacts> read_map_set(const std::filesystem::path& folder) {
   return read_fields<MapSetFacts>(*document, file.string());
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

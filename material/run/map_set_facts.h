@@ -19,7 +19,7 @@
 
 // What maps.json says of a set of maps (weft.maps/1).
 
-namespace weft::app {
+namespace weft::material {
 
 inline constexpr ProductKind kMapsProduct = {"weft.maps", "maps.json", "set of maps",
                                              "make it first with weft maps"};
@@ -49,7 +49,7 @@ struct MapStep {
 
 struct MapCheck {
   std::string name;
-  material::Severity severity = material::Severity::kPassed;
+  Severity severity = Severity::kPassed;
   double number = 0, limit = 0;
   std::string text;
   std::string picture;  ///< a file beside it; empty: none
@@ -63,7 +63,7 @@ struct TableTakenOut {
 
 struct MapSetFacts {
   std::string id;
-  library::SourceFacts source;
+  solve::SourceFacts source;
   std::string rectified;  ///< id of the maps that they were made of
   Size size;
   double mm_per_pixel = 0;
@@ -82,4 +82,4 @@ Json json_of(const MapSetFacts& facts);
 /// Reads maps.json of a folder. kNoInput, kBadData.
 Result<MapSetFacts> read_map_set(const std::filesystem::path& folder);
 
-}  // namespace weft::app
+}  // namespace weft::material

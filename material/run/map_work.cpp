@@ -9,7 +9,7 @@
 #include "report/preview.h"
 #include "solve/files/pictures.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 // Normals and colours as such, anything else as heat from its least to its largest value.
@@ -37,7 +37,7 @@ Result<void> write_map(MapWork& work, MapFacts facts, const std::vector<View<con
   return draw_map(work, std::move(facts), planes);
 }
 
-PixelPitch pitch_of_level(const material::Surface& surface, Size level) {
+PixelPitch pitch_of_level(const Surface& surface, Size level) {
   return {surface.mm_per_pixel * surface.size().width / level.width,
           surface.mm_per_pixel * surface.size().height / level.height};
 }
@@ -48,7 +48,7 @@ Result<void> draw_map(MapWork& work, MapFacts facts, const std::vector<View<cons
   reduced.add_rows(planes);
   facts.picture = facts.name + ".png";
   const report::Picture picture = picture_of(facts, reduced.averages());
-  if (Result<void> ok = write_png(work.folder / facts.picture, picture); !ok) return ok;
+  if (Result<void> ok = solve::write_png(work.folder / facts.picture, picture); !ok) return ok;
   work.made.push_back(std::move(facts));
   return {};
 }
@@ -59,4 +59,4 @@ void write_constant(MapWork& work, MapFacts facts, double value, std::string why
   work.made.push_back(std::move(facts));
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

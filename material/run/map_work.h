@@ -16,23 +16,23 @@
 #include "material/run/map_set_facts.h"
 #include "material/surface.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// A set of maps under way: what each is derived from, what is shared between them, and what was made.
 struct MapWork {
-  const material::Surface& surface;
+  const Surface& surface;
   bool has_f0 = false;  ///< the lobe's f0 is measured, and not only its roughness
   std::filesystem::path folder = {};
   Compression compression = Compression::kNone;
   const DeriveOptions& options;
   const JobContext& context;
 
-  std::string level = {};                              ///< of the solve; no remedy names it or one below
-  bool is_colour_changed = false;                      ///< by a step of the recipe
-  std::optional<material::OpacityFacts> opacity = {};  ///< of surface.opacity
-  double yarn_px = 0;                                  ///< width of a yarn; 0: not known
-  Image<float> height_mm = {};                         ///< once find_height() was asked
-  Image<float> openness = {}, bent_normal = {};        ///< once find_openness() was asked
+  std::string level = {};                        ///< of the solve; no remedy names it or one below
+  bool is_colour_changed = false;                ///< by a step of the recipe
+  std::optional<OpacityFacts> opacity = {};      ///< of surface.opacity
+  double yarn_px = 0;                            ///< width of a yarn; 0: not known
+  Image<float> height_mm = {};                   ///< once find_height() was asked
+  Image<float> openness = {}, bent_normal = {};  ///< once find_openness() was asked
   std::vector<MapFacts> made = {};
   std::vector<Verdict> verdicts = {};
 };
@@ -46,6 +46,6 @@ Result<void> draw_map(MapWork& work, MapFacts facts, const std::vector<View<cons
 void write_constant(MapWork& work, MapFacts facts, double value, std::string why);
 
 /// The pitch of a coarser level of this surface.
-PixelPitch pitch_of_level(const material::Surface& surface, Size level);
+PixelPitch pitch_of_level(const Surface& surface, Size level);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -29,11 +29,10 @@
 #include "report/preview.h"
 #include "solve/files/pictures.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
-using material::Surface;
 
 constexpr int kVersion = 3;  // raised whenever the bytes of a map may change
 
@@ -48,12 +47,12 @@ std::uint64_t bytes_of_maps(Size size) {
 }
 
 // Where the cloth has holes, by the light below where the bare table is known, else by what the solver saw.
-Result<std::optional<material::OpacityFacts>> find_opacity(const MapsOptions& options, const Session& session,
-                                                           const RectifyReport& rectified, Surface& surface,
-                                                           const JobContext& context) {
+Result<std::optional<OpacityFacts>> find_opacity(const MapsOptions& options, const Session& session,
+                                                 const RectifyReport& rectified, Surface& surface,
+                                                 const JobContext& context) {
   if (options.bare.empty()) {
-    material::Opacity marked = material::opacity_from_status(surface.status.plane());
-    if (marked.facts.holes == 0) return std::optional<material::OpacityFacts>();
+    Opacity marked = opacity_from_status(surface.status.plane());
+    if (marked.facts.holes == 0) return std::optional<OpacityFacts>();
     surface.opacity = std::move(marked.map);
     return std::optional(marked.facts);
   }
@@ -63,8 +62,8 @@ Result<std::optional<material::OpacityFacts>> find_opacity(const MapsOptions& op
   const Result<ThroughCloth> through =
       light_through_cloth(session, options.bare, *calibration, rectified.facts, context.threads);
   if (!through) return through.error();
-  Result<material::Opacity> opacity = material::opacity_from_transmission(
-      {through->share.plane(), through->saturated.plane()}, context.threads);
+  Result<Opacity> opacity =
+      opacity_from_transmission({through->share.plane(), through->saturated.plane()}, context.threads);
   if (!opacity) return std::move(opacity).error();
   surface.opacity = std::move(opacity->map);
   return std::optional(opacity->facts);
@@ -75,7 +74,7 @@ Result<std::optional<TableTakenOut>> take_table_out(const MapsOptions& options, 
                                                     int threads) {
   if (options.table_albedo.empty()) return std::optional<TableTakenOut>();
   const std::vector<double>& a = options.table_albedo;
-  const Result<material::TableFacts> facts = material::remove_table(surface, {a[0], a[1], a[2]}, threads);
+  const Result<TableFacts> facts = remove_table(surface, {a[0], a[1], a[2]}, threads);
   if (!facts) return facts.error();
   return std::optional(TableTakenOut{{a[0], a[1], a[2]}, facts->unmixed, facts->left});
 }
@@ -96,9 +95,11 @@ Result<void> draw_surface(const fs::path& folder, const Surface& surface) {
   const Image<float> normal = normals_of(slope.averages());
   const Image<float>& seen = albedo.averages();
   const double scale = report::display_scale(seen);
-  if (Result<void> ok = write_png(folder / "albedo.png", report::albedo_picture(seen, scale)); !ok) return ok;
-  if (Result<void> ok = write_png(folder / "normal.png", report::normal_picture(normal)); !ok) return ok;
-  return write_png(folder / "relit.png", report::relit_picture(seen, normal, scale));
+  if (Result<void> ok = solve::write_png(folder / "albedo.png", report::albedo_picture(seen, scale)); !ok)
+    return ok;
+  if (Result<void> ok = solve::write_png(folder / "normal.png", report::normal_picture(normal)); !ok)
+    return ok;
+  return solve::write_png(folder / "relit.png", report::relit_picture(seen, normal, scale));
 }
 
 std::vector<MapStep> steps_of(const Recipe& recipe, const FinishingFacts& facts) {
@@ -164,7 +165,7 @@ Result<void> draw_where(const std::filesystem::path& file, const Image<std::uint
   }
   report::Downsampler reduced(marked.size(), 1);
   reduced.add_rows(std::vector<View<const float>>{marked.plane()});
-  return write_png(file, report::heat_picture(reduced.averages().plane(), 1, " share"));
+  return solve::write_png(file, report::heat_picture(reduced.averages().plane(), 1, " share"));
 }
 
 // What validation says of maps.
@@ -176,7 +177,7 @@ struct CheckedMaps {
 // Whether the maps are those of a cloth and fit to be put on a material. Those that did not pass have a
 // picture of where.
 Result<CheckedMaps> check_maps(const MapWork& work, bool has_measured_black) {
-  material::MapsToValidate maps;
+  MapsToValidate maps;
   maps.surface = &work.surface;
   maps.openness = work.openness.empty() ? View<const float>() : View<const float>(work.openness.plane());
   // The slopes of a tile's height are those of its waves, which differences of pixels are not.
@@ -185,18 +186,18 @@ Result<CheckedMaps> check_maps(const MapWork& work, bool has_measured_black) {
   maps.level = work.level;
   maps.is_height_of_slopes = true;
   maps.is_colour_changed = work.is_colour_changed;
-  material::ValidationLimits limits;
+  ValidationLimits limits;
   limits.threads = work.context.threads;
-  const Result<std::vector<material::Finding>> findings = material::validate(maps, limits);
+  const Result<std::vector<Finding>> findings = validate(maps, limits);
   if (!findings && findings.error().kind == ErrorKind::kBadData) {
     return CheckedMaps{{}, {{"NO_CLOTH", "no pixel is cloth that was solved", findings.error().remedy}}};
   }
   if (!findings) return findings.error();
-  CheckedMaps checked = {.checks = {}, .verdicts = material::verdicts_of(*findings)};
-  for (const material::Finding& finding : *findings) {
+  CheckedMaps checked = {.checks = {}, .verdicts = verdicts_of(*findings)};
+  for (const Finding& finding : *findings) {
     MapCheck check = {finding.verdict.name, finding.severity,     finding.number,
                       finding.limit,        finding.verdict.text, {}};
-    if (finding.severity != material::Severity::kPassed && !finding.where.empty()) {
+    if (finding.severity != Severity::kPassed && !finding.where.empty()) {
       check.picture = "where_" + finding.verdict.name + ".png";
       if (Result<void> ok = draw_where(work.folder / check.picture, finding.where); !ok)
         return std::move(ok).error();
@@ -294,7 +295,7 @@ Result<MapSetFacts> make_set(const MapsOptions& options, const Session& session,
   Surface& surface = read->surface;
   if (Result<void> begun = begin(aside, bytes_of_maps(surface.size())); !begun)
     return std::move(begun).error();
-  const Result<std::optional<material::OpacityFacts>> opacity =
+  const Result<std::optional<OpacityFacts>> opacity =
       find_opacity(options, session, rectified, surface, context);
   if (!opacity) return opacity.error();
   const Result<std::optional<TableTakenOut>> table = take_table_out(options, surface, context.threads);
@@ -303,12 +304,12 @@ Result<MapSetFacts> make_set(const MapsOptions& options, const Session& session,
   if (!known) return known.error();
   const Result<FinishingFacts> finished = finish_surface(surface, options.recipe, *known, context);
   if (!finished) return finished.error();
-  material::fill_holes(surface, {.threads = context.threads});
+  fill_holes(surface, {.threads = context.threads});
   if (Result<void> ok = write_surface(aside.path(), *read, options.compression); !ok)
     return std::move(ok).error();
   if (Result<void> ok = draw_surface(aside.path(), surface); !ok) return std::move(ok).error();
   for (const StepPicture& each : finished->pictures) {
-    if (Result<void> ok = write_png(aside.path() / each.file, each.picture); !ok)
+    if (Result<void> ok = solve::write_png(aside.path() / each.file, each.picture); !ok)
       return std::move(ok).error();
   }
   MapWork work = {.surface = surface,
@@ -373,4 +374,4 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
   return MapsReport{product->folder, false, std::move(*facts)};
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

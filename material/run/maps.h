@@ -16,7 +16,7 @@
 #include "material/run/recipe.h"
 #include "material/run/rectify.h"
 
-namespace weft::app {
+namespace weft::material {
 
 struct MapsOptions {
   std::filesystem::path session;
@@ -58,4 +58,4 @@ Result<RectifyReport> rectified_maps(const MapsOptions& options, std::optional<d
 /// without `bare` or out of range; kInterrupted.
 Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -14,7 +14,7 @@
 #include "material/run/session_sets.h"
 #include "report/page.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,9 +39,9 @@ report::Table table_of(const std::vector<MapFacts>& maps) {
 report::Table table_of_checks(const std::vector<MapCheck>& checks) {
   report::Table table = {.header = {"check", "", "number", "limit"}};
   for (const MapCheck& check : checks) {
-    if (check.severity != material::Severity::kPassed) table.alarms.insert(table.rows.size());
+    if (check.severity != Severity::kPassed) table.alarms.insert(table.rows.size());
     table.rows.push_back(
-        {check.name, material::name_of(check.severity), number_text(check.number), number_text(check.limit)});
+        {check.name, name_of(check.severity), number_text(check.number), number_text(check.limit)});
   }
   return table;
 }
@@ -102,4 +102,4 @@ Result<void> write_maps_page(const fs::path& folder, const MapSetFacts& facts) {
   return write_file(folder / "report.html", html_of(page));
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

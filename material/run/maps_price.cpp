@@ -13,10 +13,9 @@
 #include "material/maps/occlusion.h"
 #include "material/run/surface_files.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
-using material::Surface;
 using solver::HeightMethod;
 
 constexpr int kPiece = 512;
@@ -36,7 +35,7 @@ Result<Surface> piece_of(const Surface& surface) {
   const Size size = surface.size();
   const int width = std::min(size.width, kPiece), height = std::min(size.height, kPiece);
   const double mm = surface.mm_per_pixel;
-  Result<material::Cropped> cropped = material::crop(
+  Result<Cropped> cropped = crop(
       surface, {mm * ((size.width - width) / 2), mm * ((size.height - height) / 2), mm * width, mm * height});
   if (!cropped) return std::move(cropped).error();
   return std::move(cropped->surface);
@@ -71,7 +70,7 @@ Result<Tried> height_by(HeightMethod method, const Surface& piece, const JobCont
 Result<Tried> openness_by(int directions, View<const float> height_mm, double mm_per_pixel,
                           const JobContext& context) {
   Stopwatch watch;
-  Result<material::Occlusion> found = material::occlusion(
+  Result<Occlusion> found = material::occlusion(
       height_mm, {.mm_per_pixel = mm_per_pixel, .directions = directions, .threads = context.threads});
   if (!found) return std::move(found).error();
   return Tried{std::move(found->openness), watch.lap()};
@@ -143,4 +142,4 @@ Json json_of(const MapPrices& prices) {
   return rows;
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

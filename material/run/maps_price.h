@@ -10,7 +10,7 @@
 #include "core/base/result.h"
 #include "material/run/maps.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// One setting of a map, tried on a piece of the very cloth.
 struct MapPrice {
@@ -41,4 +41,4 @@ struct MapPrices {
 Result<MapPrices> price_maps(const MapsOptions& options, const PriceAims& aims, const JobContext& context);
 Json json_of(const MapPrices& prices);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -9,7 +9,7 @@
 #include "calibration/guide/planned_cloth.h"
 #include "core/describe/described_fields.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 std::string help_of_maps() {
@@ -60,7 +60,7 @@ void describe_derived(Fields& fields, DeriveOptions& d) {
   fields.value({"directions", "Of the occlusion's lines, 4 to 64", {4, 64}}, d.directions);
   fields.value({.name = "cloth",
                 .says = "Whose lobe is typed where the photographs tell none",
-                .words = planned_cloth_names()},
+                .words = calibration::planned_cloth_names()},
                d.cloth);
 }
 
@@ -113,4 +113,4 @@ void describe(Fields& fields, FinishRequest& request) {
   describe_common(fields, request);
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -9,7 +9,7 @@
 #include "material/run/maps.h"
 #include "material/run/maps_price.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// What `weft maps` and a job that makes maps are told.
 struct MapsRequest {
@@ -31,4 +31,4 @@ struct FinishRequest : MapsRequest {
 };
 void describe(Fields& fields, FinishRequest& request);
 
-}  // namespace weft::app
+}  // namespace weft::material

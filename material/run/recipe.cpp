@@ -14,7 +14,7 @@
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -293,4 +293,4 @@ Result<Recipe> read_recipe(const fs::path& file) {
   return recipe_from_json(document, file.string());
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -12,7 +12,7 @@
 // A recipe: what is done to the maps of a solve, step by step, before other maps are derived from them. It
 // names no session, so that it runs again on any solve (docs/finishing.md).
 
-namespace weft::app {
+namespace weft::material {
 
 /// One step, with all its options.
 struct RecipeStep {
@@ -73,4 +73,4 @@ Recipe recipe_named(const std::string& name);
 /// that weft brings along (flat, tile, detail). kNoInput, kBadData.
 Result<Recipe> read_recipe(const std::filesystem::path& file);
 
-}  // namespace weft::app
+}  // namespace weft::material

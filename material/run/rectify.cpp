@@ -22,11 +22,10 @@
 #include "material/table_grid.h"
 #include "solve/session/current.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
-using material::TableGrid;
 
 constexpr int kRectifiedVersion = 3;  // raised whenever the bytes of a map may change
 constexpr const char* kFilter =
@@ -37,7 +36,7 @@ Result<CameraModel> camera_of_maps(const CameraModel& camera, Size maps, const f
     return maps.width == camera.size.width / factor && maps.height == camera.size.height / factor;
   };
   for (const int factor : {1, 2}) {
-    if (reduces(factor)) return material::reduced_camera(camera, factor);
+    if (reduces(factor)) return reduced_camera(camera, factor);
   }
   return Error{ErrorKind::kBadData, "maps are not of the calibrated camera", folder.string(),
                fmt::format("they have {} x {} pixels, its frames {} x {}", maps.width, maps.height,
@@ -77,8 +76,8 @@ void turn_yarns(double turn_deg, View<float> yarn_deg) {
   }
 }
 
-Result<void> rectify_map(const Rectification& r, const std::string& name, material::MapKind kind,
-                         SampleType type, const Result<LoadedImage>& map) {
+Result<void> rectify_map(const Rectification& r, const std::string& name, MapKind kind, SampleType type,
+                         const Result<LoadedImage>& map) {
   if (!map) return map.error();
   const auto yarn_channel = std::ranges::find(map->info.channels, "yarn_deg");
   const int yarn = yarn_channel == map->info.channels.end()
@@ -125,7 +124,6 @@ Result<void> rectify_status(const Rectification& r, std::int64_t& solved) {
 
 // All maps that the solve has.
 Result<void> rectify_maps(const Rectification& r, const SolveMaps& maps, const fs::path& solve) {
-  using material::MapKind;
   r.context.progress("rectify", 0.1);
   Result<void> made = rectify_map(r, "normal.exr", MapKind::kNormal, SampleType::kFloat, maps.normal());
   if (!made) return made;
@@ -143,8 +141,8 @@ Result<void> rectify_maps(const Rectification& r, const SolveMaps& maps, const f
   return {};
 }
 
-RectifyFacts facts_of(const std::string& id, const library::SourceFacts& source,
-                      const Calibration& calibration, const Rectification& r, std::int64_t solved) {
+RectifyFacts facts_of(const std::string& id, const solve::SourceFacts& source, const Calibration& calibration,
+                      const Rectification& r, std::int64_t solved) {
   const TableGrid& g = r.grid;
   const Vec3 corner = g.point_mm(0, 0);
   return {.id = id,
@@ -225,18 +223,17 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   const Result<Calibration> calibration = calibration_with_camera(
       options.calibration.empty() ? session->calibration_folder() : options.calibration);
   if (!calibration) return calibration.error();
-  const library::SessionSolves solves = library::solves_of(*session);
-  const Result<library::ChoosableSolve> solve =
-      library::solve_for_maps(solves, options.solve, options.is_draft);
+  const solve::SessionSolves solves = solve::solves_of(*session);
+  const Result<solve::ChoosableSolve> solve = solve::solve_for_maps(solves, options.solve, options.is_draft);
   if (!solve) return solve.error();
-  const library::SourceFacts source = library::source_of(*solve, why_stale(solves, solve->id));
+  const solve::SourceFacts source = solve::source_of(*solve, why_stale(solves, solve->id));
   const Result<SolveMaps> maps = SolveMaps::open(solve->folder);
   if (!maps) return maps.error();
   const CameraModel seen = seen_from(session->pose, session->cloth_height_mm, *calibration->camera);
   const Result<CameraModel> camera = camera_of_maps(seen, maps->size(), solve->folder);
   if (!camera) return camera.error();
-  const Result<TableGrid> grid = material::table_grid(
-      *camera, {options.mm_per_pixel.value_or(0), session->cloth_height_mm, options.turn_deg});
+  const Result<TableGrid> grid =
+      table_grid(*camera, {options.mm_per_pixel.value_or(0), session->cloth_height_mm, options.turn_deg});
   if (!grid) return grid.error();
 
   const Json inputs = {{"version", kRectifiedVersion},
@@ -274,4 +271,4 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   return RectifyReport{product.folder, false, std::move(facts)};
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -16,7 +16,7 @@
 #include "core/image/image.h"
 #include "solve/session/current.h"
 
-namespace weft::app {
+namespace weft::material {
 
 inline constexpr ProductKind kRectifiedProduct = {"weft.rectified", "rectify.json", "set of rectified maps",
                                                   "rectify a solve first with weft rectify"};
@@ -37,7 +37,7 @@ void describe(Fields& fields, RectifyOptions& options);
 /// What rectify.json says of rectified maps (weft.rectified/1).
 struct RectifyFacts {
   std::string id;
-  library::SourceFacts source;
+  solve::SourceFacts source;
   std::string calibration;
   Size size;  ///< of the maps
   double mm_per_pixel = 0;
@@ -66,8 +66,8 @@ struct RectifyReport {
 /// of half the frame's size, as the level preview gives, have half the camera's. Memory holds one map of the
 /// solve at a time: 16 to 32 bytes a pixel.
 ///
-/// Errors: kUsage (an option), kNoInput (no session), those of library::solve_for_maps(), kBadData (a
+/// Errors: kUsage (an option), kNoInput (no session), those of solve::solve_for_maps(), kBadData (a
 /// calibration without camera, maps that are not of its size), kCannotCreate, kInputOutput, kInterrupted.
 Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 bool has_maps(const MapSetFacts& facts, const std::vector<std::string>& wanted) {
@@ -16,9 +16,9 @@ bool has_maps(const MapSetFacts& facts, const std::vector<std::string>& wanted) 
   });
 }
 
-SessionSet set_of(const library::SessionSolves& solves, Product product, MapSetFacts facts) {
-  const library::SourceFacts& source = facts.source;
-  const library::ChoosableSolve* const found = solves.find(source.solve);
+SessionSet set_of(const solve::SessionSolves& solves, Product product, MapSetFacts facts) {
+  const solve::SourceFacts& source = facts.source;
+  const solve::ChoosableSolve* const found = solves.find(source.solve);
   SessionSet set = {std::move(product), {}, {}, false, why_stale(solves, source.solve)};
   set.level = found != nullptr ? found->level : source.level;
   set.is_draft = found != nullptr ? found->is_preview() : source.is_draft;
@@ -37,7 +37,7 @@ bool flag_at(const Json& document, const char* key) {
   return document.is_object() && document.value(key, Json()) == Json(true);
 }
 
-std::vector<SessionSet> sets_of(const library::SessionSolves& solves, bool of_previews) {
+std::vector<SessionSet> sets_of(const solve::SessionSolves& solves, bool of_previews) {
   std::vector<SessionSet> sets;
   for (Product& product : list_products(kMapsProduct, solves.session / "maps")) {
     Result<MapSetFacts> facts = read_map_set(product.folder);
@@ -47,9 +47,9 @@ std::vector<SessionSet> sets_of(const library::SessionSolves& solves, bool of_pr
   return sets;
 }
 
-const SessionSet* set_to_use(const library::SessionSolves& solves, const std::vector<SessionSet>& sets,
+const SessionSet* set_to_use(const solve::SessionSolves& solves, const std::vector<SessionSet>& sets,
                              const std::vector<std::string>& wanted) {
-  const library::ChoosableSolve* const current = solves.current_one();
+  const solve::ChoosableSolve* const current = solves.current_one();
   const auto order_of = [&](const SessionSet& set) {
     const bool is_of_current = current != nullptr && set.facts.source.solve == current->id;
     return std::tuple(!set.is_draft, is_of_current, has_maps(set.facts, wanted));
@@ -61,9 +61,9 @@ const SessionSet* set_to_use(const library::SessionSolves& solves, const std::ve
   return best;
 }
 
-std::string how_to_make_better(const library::SessionSolves& solves) {
+std::string how_to_make_better(const solve::SessionSolves& solves) {
   const std::string session = solves.session.string();
-  const library::ChoosableSolve* const best = solves.best ? &solves.all[*solves.best] : nullptr;
+  const solve::ChoosableSolve* const best = solves.best ? &solves.all[*solves.best] : nullptr;
   const bool has_better = best != nullptr && !best->is_preview() && best->outdated.empty();
   std::string solve = fmt::format("weft solve {} --quality standard, then with ", session);
   if (has_better) solve.clear();
@@ -72,7 +72,7 @@ std::string how_to_make_better(const library::SessionSolves& solves) {
                      is_chosen ? " --solve " + best->id : "");
 }
 
-std::vector<std::string> source_lines(const library::SourceFacts& source) {
+std::vector<std::string> source_lines(const solve::SourceFacts& source) {
   std::vector<std::string> lines = {
       fmt::format("from the {}{}solve {}", source.level, source.level.empty() ? "" : " ", source.solve)};
   if (source.is_draft) lines.back() += ", a draft of half the size and without masks";
@@ -80,12 +80,12 @@ std::vector<std::string> source_lines(const library::SourceFacts& source) {
   return lines;
 }
 
-library::SourceFacts source_in(const Json& scan) {
-  library::SourceFacts source = {text_at(scan, "solve"), text_at(scan, "level"), flag_at(scan, "draft"), {}};
+solve::SourceFacts source_in(const Json& scan) {
+  solve::SourceFacts source = {text_at(scan, "solve"), text_at(scan, "level"), flag_at(scan, "draft"), {}};
   for (const Json& why : scan.is_object() ? scan.value("stale", Json::array()) : Json::array()) {
     if (why.is_string()) source.stale.push_back(why.get<std::string>());
   }
   return source;
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -14,7 +14,7 @@
 
 // The sets of maps of a session, and which of them others are made from.
 
-namespace weft::app {
+namespace weft::material {
 
 /// A text or a truth of a document; empty or false where it has none of that kind.
 std::string text_at(const Json& document, const char* key);
@@ -30,19 +30,19 @@ struct SessionSet {
 };
 
 /// The complete sets of a session but its previews, the oldest first. `of_previews`: those too.
-std::vector<SessionSet> sets_of(const library::SessionSolves& solves, bool of_previews = false);
+std::vector<SessionSet> sets_of(const solve::SessionSolves& solves, bool of_previews = false);
 
 /// Which of them exports and materials are made from: of those of the current solve, else of all, the newest
 /// that has the maps `wanted`, else the newest. Maps of a preview come last. Null where there is none.
-const SessionSet* set_to_use(const library::SessionSolves& solves, const std::vector<SessionSet>& sets,
+const SessionSet* set_to_use(const solve::SessionSolves& solves, const std::vector<SessionSet>& sets,
                              const std::vector<std::string>& wanted);
 
 /// What to do where there are maps of a preview alone: "make better ones with weft maps SESSION".
-std::string how_to_make_better(const library::SessionSolves& solves);
+std::string how_to_make_better(const solve::SessionSolves& solves);
 
 /// "from the standard solve 0123456789abcdef", then why that is stale.
-std::vector<std::string> source_lines(const library::SourceFacts& source);
+std::vector<std::string> source_lines(const solve::SourceFacts& source);
 /// What a list of scans says of one; empty where it does not.
-library::SourceFacts source_in(const Json& scan);
+solve::SourceFacts source_in(const Json& scan);
 
-}  // namespace weft::app
+}  // namespace weft::material

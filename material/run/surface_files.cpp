@@ -18,11 +18,10 @@
 #include "material/run/map_facts.h"
 #include "solve/files/gloss_maps.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
-using material::Surface;
 
 constexpr float kNoSigma_deg = 180;
 
@@ -103,7 +102,7 @@ Result<void> read_lobe(const fs::path& folder, RectifiedSurface& into) {
   for (int y = 0; y < size.height; ++y) {
     for (int p = 0; p < 3; ++p)
       std::copy_n(roughness->plane(p + 1).row(y), size.width, into.surface.lobe.plane(p).row(y));
-    if (!into.has_f0) std::fill_n(f0.plane().row(y), size.width, static_cast<float>(kTypedF0));
+    if (!into.has_f0) std::fill_n(f0.plane().row(y), size.width, static_cast<float>(solve::kTypedF0));
     for (int p = 0; p < f0.planes(); ++p)
       std::copy_n(f0.plane(p).row(y), size.width, into.surface.lobe.plane(3 + p).row(y));
   }
@@ -212,4 +211,4 @@ Result<void> write_surface(const fs::path& folder, const RectifiedSurface& recti
                f0.size() == 1 ? std::vector<std::string>{"f0"} : kTintedChannels);
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -9,7 +9,7 @@
 #include "core/image/image.h"
 #include "material/surface.h"
 
-namespace weft::app {
+namespace weft::material {
 
 std::vector<View<const float>> planes_of(const Image<float>& map);
 
@@ -18,7 +18,7 @@ Image<float> normals_of(const Image<float>& slope);
 
 /// The maps of a folder that weft rectify made, as a surface.
 struct RectifiedSurface {
-  material::Surface surface;
+  Surface surface;
   /// Its lobe has a measured f0. One of an albedo without a scale has none: there it is kTypedF0.
   bool has_f0 = false;
 };
@@ -30,4 +30,4 @@ Result<RectifiedSurface> read_surface(const std::filesystem::path& rectified, do
 Result<void> write_surface(const std::filesystem::path& folder, const RectifiedSurface& rectified,
                            Compression compression);
 
-}  // namespace weft::app
+}  // namespace weft::material

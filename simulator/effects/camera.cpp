@@ -15,7 +15,8 @@ Pass camera_pass(const Scene& scene, const SceneRig& rig) {
   return {scene.effects.distortion ? "distortion" : "camera",
           scene.effects.distortion ? "finds the point that each pixel sees through the bent rays of the lens"
                                    : kDoes,
-          PassStage::kSurface, [lens = *rig.lens, height_mm = scene.geometry.cloth_height_mm](PassTile& tile) {
+          PassStage::kSurface,
+          [lens = *rig.lens, height_mm = scene.geometry.cloth_height_mm](PassTile& tile) {
             for_each_pixel(tile.area, [&](std::size_t i, int x, int y) {
               tile.point_mm[i] = lens.point_on_plane(x, y, height_mm);
             });

@@ -24,7 +24,8 @@ Pass cast_shadows_pass(const Scene& scene, const SceneRig& rig, const Halos& hal
   settings.reach_mm = halos.shadow_mm;
   settings.seed = static_cast<std::uint64_t>(scene.seed);
   const double radius_mm = scene.effects.finite_led ? scene.lights.led_radius_mm : 0;
-  return {"cast shadows", "takes from each point the share of the LED that the cloth hides", PassStage::kLight,
+  return {"cast shadows", "takes from each point the share of the LED that the cloth hides",
+          PassStage::kLight,
           [leds = rig.leds.leds, settings, radius_mm, halo = halos.of_light()](PassTile& tile) {
             tile.visibility.assign(tile.irradiance.size(), 1);
             if (tile.led == 0 || tile.failure) return;

@@ -54,8 +54,8 @@ Pass noise_pass(const Scene& scene, const SceneRig& rig) {
 }
 
 Pass converter_pass(const SceneRig& rig) {
-  return {"converter", "adds the black level, rounds to whole counts and clips at 0 and white", PassStage::kShot,
-          [sensor = rig.sensor](PassTile& tile) {
+  return {"converter", "adds the black level, rounds to whole counts and clips at 0 and white",
+          PassStage::kShot, [sensor = rig.sensor](PassTile& tile) {
             tile.counts.resize(tile.samples.size());
             for (std::size_t i = 0; i < tile.counts.size(); ++i)
               tile.counts[i] = count_of(sensor, tile.samples[i]);

@@ -58,8 +58,8 @@ Pass stray_pass(const Scene& scene, const SceneRig& rig) {
     for (double& l : light) l *= scene.lights.stray;
     of_led.push_back(light);
   }
-  return {"stray", "adds light of the LED that comes back from the rig, evenly from all sides", PassStage::kLight,
-          even_light(std::move(of_led))};
+  return {"stray", "adds light of the LED that comes back from the rig, evenly from all sides",
+          PassStage::kLight, even_light(std::move(of_led))};
 }
 
 Pass ambient_pass(const Scene& scene, const SceneRig& rig) {

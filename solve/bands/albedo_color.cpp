@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/rig/color_transform.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr double kStep = 1e-3;  // of albedo, for the slope of a curve
@@ -97,4 +97,4 @@ MapBand AlbedoColor::of(const MapBand& camera, std::vector<View<const float>>& c
   return band;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -7,7 +7,7 @@
 #include "core/rig/calibration.h"
 #include "solve/bands/bands.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// Turns solved, demosaiced albedo of a session from the camera's channels into linear Rec.709 by its
 /// calibration's ColorTransform. Albedo below 0 stays. Sigma goes through the transform's slope: by
@@ -31,4 +31,4 @@ class AlbedoColor {
   Image<float> albedo_, sigma_, model_, calibration_;
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

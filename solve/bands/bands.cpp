@@ -16,7 +16,7 @@
 #include "solve/photographs/tile_reader.h"
 #include "solver/kernels/demosaic.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 using solver::kDemosaicReach;
@@ -262,4 +262,4 @@ Result<double> solve_bands(const Photographs& photographs, const solver::Method&
   return handover.waited_seconds();
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -16,7 +16,7 @@
 #include "solver/method.h"
 #include "solver/uncertainty/model_sigma.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 class LightCorrection;
 
@@ -57,4 +57,4 @@ Result<double> solve_bands(const Photographs& photographs, const solver::Method&
                            const TileOptions& tile, const JobContext& context, const BandSink& sink,
                            const BandOptions& options = {});
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -7,7 +7,7 @@
 
 #include "core/base/parallel.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 // 0, 16, 32 ... and the last of `count`.
@@ -129,4 +129,4 @@ std::array<View<const float>, 4> CalibrationChannels::of(const MapBand& band) {
           channels_.plane(3).crop(rows)};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -9,7 +9,7 @@
 #include "solve/photographs/photographs.h"
 #include "solver/uncertainty/calibration_sigma.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// Columns and rows from one place where calibration's share of sigma is worked out to the next.
 inline constexpr int kCalibrationSigmaStep = 16;
@@ -47,4 +47,4 @@ class CalibrationChannels {
   Image<float> albedo_, relative_, channels_;
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -8,7 +8,7 @@
 
 #include "core/base/parallel.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 using solver::kSharpenReach;
@@ -79,4 +79,4 @@ DeblurFacts Deblur::facts() const {
   return {spread_.sigma_px, shares_ / static_cast<double>(size_.pixels())};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -11,7 +11,7 @@
 #include "solve/bands/held_rows.h"
 #include "solver/deblur/sharpen.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// What sharpening did to a frame.
 struct DeblurFacts {
@@ -46,4 +46,4 @@ class Deblur {
   double shares_ = 0;  // their sum over the rows handed on
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

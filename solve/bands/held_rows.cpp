@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 enum Held : int {
@@ -91,4 +91,4 @@ MapBand HeldRows::of(Rect rows) const {
   return band;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -6,7 +6,7 @@
 #include "core/image/image.h"
 #include "solve/bands/bands.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// The rows of maps that a step after the solve looks back and ahead at.
 class HeldRows {
@@ -31,4 +31,4 @@ class HeldRows {
   int first_ = 0, end_ = 0;
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "solver/kernels/demosaic.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 using solver::kDemosaicReach;
@@ -114,4 +114,4 @@ Result<void> Realign::hand_on(int end_row) {
   return next_(band);
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

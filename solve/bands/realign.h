@@ -11,7 +11,7 @@
 #include "solve/bands/held_rows.h"
 #include "solver/lateral/align.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// Takes the bands of a solved mosaic in order and hands them on with the maps of red and blue photosites
 /// where those of green are (solver/lateral): albedo is demosaiced again from what then lies side by side.
@@ -39,4 +39,4 @@ class Realign {
   int handed_on_ = 0;  // rows of the image
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

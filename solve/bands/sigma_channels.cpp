@@ -8,7 +8,7 @@
 
 #include "solver/method.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 const std::array<std::string, 4> kOf = {"R", "G", "B", "normal_deg"};
@@ -52,4 +52,4 @@ std::vector<View<const float>> SigmaChannels::of(const MapBand& band,
   return channels;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -8,7 +8,7 @@
 #include "core/image/image.h"
 #include "solve/bands/bands.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// The channels of sigma.exr (docs/formats.md): for R, G, B of the albedo and normal_deg the root of the sum
 /// of the squares of their parts, then the parts: by noise, by the model, and by the calibration where it
@@ -34,4 +34,4 @@ class SigmaChannels {
   Image<float> sums_;  ///< R, G, B, normal_deg
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

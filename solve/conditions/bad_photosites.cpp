@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 std::vector<Photosite> find_bad_photosites(const Mosaics& mosaics, const std::vector<Photosite>& known,
                                            int threads) {
@@ -49,4 +49,4 @@ Result<void> mend_photosites(const Exposures& exposures) {
   return {};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

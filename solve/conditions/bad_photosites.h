@@ -9,7 +9,7 @@
 #include "solve/conditions/conditions.h"
 #include "solve/photographs/photographs.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// The photosites that say nothing of light (core/rig/photosites.h), sorted, each once: hot in the dark shot,
 /// dead in the lit ones, or `known` to be bad.
@@ -24,4 +24,4 @@ void replace_bad_photosites(std::vector<Photosite> bad, Mosaics& mosaics,
 /// Replaces the photosites that are hot, dead, or known to be bad, in every frame.
 Result<void> mend_photosites(const Exposures& exposures);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 void join_brackets(std::vector<BracketShot> shots, Mosaics& mosaics) {
   if (shots.empty()) return;
@@ -37,4 +37,4 @@ Result<void> add_brackets(const Exposures& exposures) {
   return {};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

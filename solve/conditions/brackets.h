@@ -9,7 +9,7 @@
 #include "solve/conditions/conditions.h"
 #include "solve/photographs/photographs.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// One light at another exposure.
 struct BracketShot {
@@ -25,4 +25,4 @@ void join_brackets(std::vector<BracketShot> shots, Mosaics& mosaics);
 /// Puts bracket shots beside the lit shot of their LED, by measured ratios of light.
 Result<void> add_brackets(const Exposures& exposures);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -3,15 +3,15 @@
 
 #include <array>
 
+#include "solve/conditions/bad_photosites.h"
 #include "solve/conditions/brackets.h"
 #include "solve/conditions/drift.h"
 #include "solve/conditions/led_gains.h"
-#include "solve/conditions/bad_photosites.h"
+#include "solve/conditions/lens_glare.h"
 #include "solve/conditions/tilted_cloth.h"
 #include "solve/conditions/useless_lights.h"
-#include "solve/conditions/lens_glare.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 // In the order in which they must be met: each is found in photographs that those before it have put right.
@@ -27,4 +27,4 @@ Result<void> meet_conditions(const Exposures& exposures) {
   return {};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -14,7 +14,7 @@
 // (docs/conditions.md). A condition is a file of this folder: what finds it, what puts it right, and what is
 // said of it.
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// What a plan has beyond the shots that are solved, in its order.
 struct FramesBeside {
@@ -35,4 +35,4 @@ struct Exposures {
 /// of the conditions.
 Result<void> meet_conditions(const Exposures& exposures);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -16,15 +16,15 @@
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 // As solve.json has them.
 constexpr const char *kFromPatches = "patches", *kFromRepeats = "repeat";
 
 // Light of a repeat over that of the photograph of the same light.
-std::optional<double> ratio_of(const RepeatedLight& repeat, const Photographs& photographs, const Frames& again,
-                               int threads) {
+std::optional<double> ratio_of(const RepeatedLight& repeat, const Photographs& photographs,
+                               const Frames& again, int threads) {
   const Size size = photographs.size;
   constexpr int kBlock = solver::kLightBlock;
   const int across = (size.width + kBlock - 1) / kBlock;
@@ -268,4 +268,4 @@ bool was_told_by_patches(const ConditionFacts& facts) {
   return !facts.drift.empty() && facts.drift.front().from == kFromPatches;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -14,7 +14,7 @@
 // How bright each light was in its shot against its calibration, and the field put right
 // (solver/conditions/light_change.h).
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// A light that was lit once more. Times are in any unit.
 struct RepeatedLight {
@@ -80,4 +80,4 @@ Result<void> follow_drift(const Exposures& exposures);
 /// Whether white patches told what follow_drift() said.
 bool was_told_by_patches(const ConditionFacts& facts);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

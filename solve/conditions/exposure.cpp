@@ -13,7 +13,7 @@
 #include "core/base/percent.h"
 #include "core/base/statistics.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr int kFullnessRows = 16;  // from one filter cell that is looked at to the next
@@ -116,4 +116,4 @@ Error nothing_solved(const std::string& where, Size size, const Fullness& fullne
           std::move(remedy)};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

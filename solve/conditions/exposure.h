@@ -8,7 +8,7 @@
 #include "core/solve/verdict.h"
 #include "solve/photographs/photographs.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// How full photographs are: shares of the readings of all lights.
 struct Fullness {
@@ -40,4 +40,4 @@ std::optional<Verdict> exposure_verdict(const Fullness& fullness, double lost, d
 /// What a solve without any solved pixel ends with.
 Error nothing_solved(const std::string& where, Size size, const Fullness& fullness, bool of_session);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -16,7 +16,7 @@
 #include "solver/method.h"
 #include "solver/sample_tiles.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 using Eigen::MatrixXd;
@@ -231,4 +231,4 @@ Result<void> follow_cloth(const Exposures& exposures) {
   return {};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -12,7 +12,7 @@
 
 // How bright each light was against its calibration, told by the cloth itself.
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// The light of LED k on the readings is g_k times that of the calibration. With b = albedo times normal
 /// eliminated at each sample pixel, what is left of its readings, P x = P diag(L b) log g, is linear in the
@@ -50,4 +50,4 @@ Result<std::optional<LedGains>> find_led_gains(const Photographs& photographs, c
 /// light is predicted better for it.
 Result<void> follow_cloth(const Exposures& exposures);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/conditions/lens_glare.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 Result<void> tell_veil(const Exposures& exposures) {
   const Mosaics* mosaics = exposures.photographs.mosaics();
@@ -10,4 +10,4 @@ Result<void> tell_veil(const Exposures& exposures) {
   return {};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

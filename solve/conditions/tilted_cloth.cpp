@@ -5,7 +5,7 @@
 
 #include "core/rig/cloth_pose.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 Result<void> lay_level(const Exposures& exposures) {
   const ClothPose& pose = exposures.plan.session.pose;
@@ -22,4 +22,4 @@ Result<void> lay_level(const Exposures& exposures) {
   return {};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

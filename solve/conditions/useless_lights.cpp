@@ -14,7 +14,7 @@
 
 #include "core/base/percent.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr double kMostOfFrame = 0.99;
@@ -136,4 +136,4 @@ Result<void> drop_useless_lights(const Exposures& exposures) {
   return leave_out(lights, photographs);
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -8,7 +8,7 @@
 #include "solve/conditions/conditions.h"
 #include "solve/photographs/photographs.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// A photograph that says nothing of the cloth.
 struct UselessLight {
@@ -28,4 +28,4 @@ std::vector<UselessLight> find_useless_lights(const Photographs& photographs);
 /// Leaves out those of a rig's LEDs. kBadData where fewer than three remain.
 Result<void> drop_useless_lights(const Exposures& exposures);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -6,7 +6,7 @@
 
 #include "solve/correction/light_correction.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 void CorrectedTile::apply(const LightCorrection& correction, solver::TileInput& input) {
   const Size size = {input.tile.width(), input.tile.height()};
@@ -26,4 +26,4 @@ void CorrectedTile::apply(const LightCorrection& correction, solver::TileInput& 
   input.parallel = std::span(views_).subspan(of_frames);
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -6,7 +6,7 @@
 #include "core/image/image.h"
 #include "solver/method.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 class LightCorrection;
 
@@ -21,4 +21,4 @@ class CorrectedTile {
   std::vector<View<const float>> views_;
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

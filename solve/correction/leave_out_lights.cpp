@@ -13,7 +13,7 @@
 #include "solve/photographs/tile_reader.h"
 #include "solver/in_double/pixel.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -258,4 +258,4 @@ Result<solver::BlockChoice> choose_by_block(const Photographs& photographs, cons
   return comparison.choice();
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -10,7 +10,7 @@
 #include "solver/left_out/left_out.h"
 #include "solver/method.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 class LightCorrection;
 
@@ -43,4 +43,4 @@ std::vector<solver::Patch> of_few_rows(std::span<const solver::Patch> patches, S
 Result<solver::BlockChoice> choose_by_block(const Photographs& photographs, const SolveVariant& base,
                                             const SolveVariant& better, const JobContext& context);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

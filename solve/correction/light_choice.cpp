@@ -11,7 +11,7 @@
 #include "core/image/tiles.h"
 #include "solve/correction/leave_out_lights.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 using solver::Gain;
@@ -223,4 +223,4 @@ std::size_t light_choice_patches(Size size) {
   return of_few_rows(patches_to_choose_by(size), size).size();
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

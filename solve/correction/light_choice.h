@@ -10,7 +10,7 @@
 #include "solve/photographs/photographs.h"
 #include "solver/left_out/left_out.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// Which effects are taken out of the readings of a frame, and why.
 struct LightChoice {
@@ -43,4 +43,4 @@ solver::Gain gain_of_correction(const solver::LeftOut& without, const solver::Le
 /// How many patches choose_light() leaves lights out of in a frame of this size.
 std::size_t light_choice_patches(Size size);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

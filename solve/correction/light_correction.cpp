@@ -14,7 +14,7 @@
 #include "solver/transport/marched_shadows.h"
 #include "solver/transport/slices.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr int kBlockColumns = 512;
@@ -254,4 +254,4 @@ void LightCorrection::mark_shadows(Rect tile, std::span<const View<float>> readi
   }
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -12,7 +12,7 @@
 #include "solver/transport/light_directions.h"
 #include "solver/transport/relief.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// A solved frame as far as light over it depends on it.
 struct SolvedFrame {
@@ -100,4 +100,4 @@ class LightCorrection {
   Image<std::uint32_t> visible_;  ///< words of bits, of the slab
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 LightStrengths::LightStrengths(const LightField& field, Size size, int threads)
     : columns_((size.width - 1) / kCell + 2), rows_((size.height - 1) / kCell + 2) {
@@ -36,4 +36,4 @@ void LightStrengths::read(std::size_t k, int c, int y, int x0, int x1, float* st
   }
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -7,7 +7,7 @@
 #include "core/image/image.h"
 #include "core/rig/light_field.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// The strengths of all lights over a frame, asked of the field once a cell of its grid and straight between:
 /// for what goes over the frame several times.
@@ -25,4 +25,4 @@ class LightStrengths {
   std::vector<float> corner_;  // [((k * 3 + c) * rows + row) * columns + column]
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

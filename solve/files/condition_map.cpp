@@ -17,12 +17,12 @@
 #include "solver/in_double/factor.h"
 #include "solver/in_double/pixelwise.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 /// What one thread works with.
 struct Worker {
-  pipeline::TileReader reader;
+  TileReader reader;
   std::vector<solver::PixelRow> rows;
   std::vector<solver::ReadingStory> stories;
 };
@@ -39,7 +39,7 @@ double condition_decades(std::span<const solver::PixelRow> rows,
   return std::min(std::log10(solver::factorise(kept).condition), kMostDecades);
 }
 
-Result<void> write_condition_map(const pipeline::Photographs& photographs, const std::string& method,
+Result<void> write_condition_map(const Photographs& photographs, const std::string& method,
                                  const std::filesystem::path& file, Compression compression,
                                  const JobContext& context) {
   const Size size = photographs.size;
@@ -47,7 +47,7 @@ Result<void> write_condition_map(const pipeline::Photographs& photographs, const
   Image<float> decades(size);
   std::vector<Worker> workers;
   for (int i = 0; i < resolved_threads(context.threads); ++i)
-    workers.push_back({pipeline::TileReader(photographs, tile), {}, {}});
+    workers.push_back({TileReader(photographs, tile), {}, {}});
   std::atomic<std::int64_t> done = 0;
   const auto look = [&](Rect part, int number) {
     Worker& worker = workers[static_cast<std::size_t>(number)];
@@ -78,4 +78,4 @@ Result<void> write_condition_map(const pipeline::Photographs& photographs, const
       {.type = SampleType::kHalf, .compression = compression, .pitch_mm = pitch_in_the_middle(photographs)});
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

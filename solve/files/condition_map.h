@@ -11,7 +11,7 @@
 #include "solve/photographs/photographs.h"
 #include "solver/in_double/pixel.h"
 
-namespace weft::app {
+namespace weft::solve {
 
 /// What stands for lights that do not span three directions: double tells no condition number from infinity
 /// there.
@@ -23,8 +23,8 @@ double condition_decades(std::span<const solver::PixelRow> rows,
 
 /// Writes condition.exr: by pixel condition_decades() of the readings that the method keeps, each pixel by
 /// itself in double. Reports the phase "condition".
-Result<void> write_condition_map(const pipeline::Photographs& photographs, const std::string& method,
+Result<void> write_condition_map(const Photographs& photographs, const std::string& method,
                                  const std::filesystem::path& file, Compression compression,
                                  const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::solve

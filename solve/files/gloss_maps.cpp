@@ -20,7 +20,7 @@
 #include "report/preview.h"
 #include "solve/files/pictures.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,13 +37,13 @@ Values values_of(double alpha, double along, double yarn_deg, const std::array<d
   return values;
 }
 
-std::array<double, 3> f0_of(const pipeline::GlossFacts& facts, std::size_t lobe) {
+std::array<double, 3> f0_of(const GlossFacts& facts, std::size_t lobe) {
   const bool is_tinted = lobe < facts.f0_of_channels.size() && facts.f0_of_channels[lobe];
   const double f0 = facts.lobes[lobe].lobe.f0;
   return is_tinted ? facts.f0_of_channels[lobe]->f0 : std::array<double, 3>{f0, f0, f0};
 }
 
-bool has_tint(const pipeline::GlossFacts& facts) {
+bool has_tint(const GlossFacts& facts) {
   return std::ranges::any_of(facts.f0_of_channels, [](const auto& f0) { return f0.has_value(); });
 }
 
@@ -78,7 +78,7 @@ Values mixed(const Values& most, const Values& other, double part) {
                    {mean(5), mean(6), mean(7)});
 }
 
-std::array<Values, kKinds> values_of(const pipeline::GlossFacts& facts) {
+std::array<Values, kKinds> values_of(const GlossFacts& facts) {
   std::array<Values, kKinds> values;
   values.fill(values_of(kTypedAlpha, kTypedAlpha, 0, {kTypedF0, kTypedF0, kTypedF0}));
   for (std::size_t l = 0; l < facts.lobes.size(); ++l) {
@@ -112,7 +112,7 @@ struct PictureKinds {
   }
 };
 
-PictureKinds picture_kinds(const pipeline::GlossFacts& facts) {
+PictureKinds picture_kinds(const GlossFacts& facts) {
   PictureKinds all;
   for (std::size_t l = 0; l < facts.lobes.size(); ++l) {
     const solver::Lobe& lobe = facts.lobes[l].lobe;
@@ -133,7 +133,7 @@ PictureKinds picture_kinds(const pipeline::GlossFacts& facts) {
 
 }  // namespace
 
-Result<void> write_gloss_maps(const fs::path& folder, const pipeline::GlossFacts& facts, AlbedoScale scale,
+Result<void> write_gloss_maps(const fs::path& folder, const GlossFacts& facts, AlbedoScale scale,
                               Compression compression, PixelPitch pitch_mm, bool previews) {
   if (!facts.is_measured() || facts.share == 0) return {};
   const Result<LoadedImage> status = read_image(folder / "status.png");
@@ -190,4 +190,4 @@ Result<void> write_gloss_maps(const fs::path& folder, const pipeline::GlossFacts
   return write_png(folder / "reflectance.png", report::lobe_picture(shares.averages(), pictured.keys));
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -9,7 +9,7 @@
 #include "core/rig/albedo_scale.h"
 #include "solve/gloss/gloss.h"
 
-namespace weft::app {
+namespace weft::solve {
 
 /// What artists are given where no lobe was measured, and it is called typed: f0 of cellulose, roughness of
 /// matt cloth.
@@ -25,7 +25,7 @@ inline constexpr double kTypedF0 = 0.04, kTypedAlpha = 1;
 ///   reflectance.png  where which lobe holds and how yarns lie; only if `previews`
 /// Pixels without GLOSSY have typed values. Nothing is written where no lobe was measured or none is used.
 /// Errors: of files; kTryAgain where memory is short.
-Result<void> write_gloss_maps(const std::filesystem::path& folder, const pipeline::GlossFacts& facts,
-                              AlbedoScale scale, Compression compression, PixelPitch pitch_mm, bool previews);
+Result<void> write_gloss_maps(const std::filesystem::path& folder, const GlossFacts& facts, AlbedoScale scale,
+                              Compression compression, PixelPitch pitch_mm, bool previews);
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -3,9 +3,9 @@
 
 #include <utility>
 
-namespace weft::app {
+namespace weft::solve {
 
-PixelPitch pitch_in_the_middle(const pipeline::Photographs& photographs) {
+PixelPitch pitch_in_the_middle(const Photographs& photographs) {
   if (!photographs.camera || !photographs.field) return {};
   const CameraModel& camera = *photographs.camera;
   const double x = (camera.size.width - 1) / 2.0, y = (camera.size.height - 1) / 2.0;
@@ -38,7 +38,7 @@ Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size, 
   return files;
 }
 
-Result<void> MapFiles::write(const pipeline::MapBand& band, std::span<const View<const float>> sigma) {
+Result<void> MapFiles::write(const MapBand& band, std::span<const View<const float>> sigma) {
   if (Result<void> ok = normal_->write_rows(band.normal); !ok) return ok;
   if (Result<void> ok = residual_->write_rows(std::array{band.residual}); !ok) return ok;
   if (Result<void> ok = status_->write_rows(band.status); !ok) return ok;
@@ -54,4 +54,4 @@ Result<void> MapFiles::finish() {
   return {};
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace weft::app {
+namespace weft::solve {
 
 NormalComparison summarize(std::vector<float>& angles_deg) {
   std::sort(angles_deg.begin(), angles_deg.end());
@@ -24,4 +24,4 @@ NormalComparison summarize(std::vector<float>& angles_deg) {
   return c;
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

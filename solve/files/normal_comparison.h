@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace weft::app {
+namespace weft::solve {
 
 /// Angles between two normal maps, over the pixels that count.
 struct NormalComparison {
@@ -16,4 +16,4 @@ struct NormalComparison {
 /// Mean, median, 95th percentile and maximum of angles, which are sorted on the way.
 NormalComparison summarize(std::vector<float>& angles_deg);
 
-}  // namespace weft::app
+}  // namespace weft::solve

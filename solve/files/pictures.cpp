@@ -9,7 +9,7 @@
 
 #include "core/image_io/image_io.h"
 
-namespace weft::app {
+namespace weft::solve {
 
 namespace fs = std::filesystem;
 
@@ -52,7 +52,7 @@ Result<TruthError> error_against(const fs::path& truth, const fs::path& normal) 
 
 Pictures::Pictures(Size size) : normal_(size, 3), albedo_(size, 3), status_(size) {}
 
-void Pictures::add(const pipeline::MapBand& band) {
+void Pictures::add(const MapBand& band) {
   normal_.add_rows(band.normal, band.status);
   albedo_.add_rows(band.albedo);
   status_.add_rows(band.status);
@@ -89,4 +89,4 @@ Result<std::vector<std::string>> Pictures::write(const fs::path& folder, const s
   return names;
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -12,7 +12,7 @@
 #include "solve/bands/bands.h"
 #include "solve/files/normal_comparison.h"
 
-namespace weft::app {
+namespace weft::solve {
 
 /// How a solve differs from its truth, as numbers and as a picture.
 struct TruthError {
@@ -30,7 +30,7 @@ Result<void> write_png(const std::filesystem::path& file, const report::Picture&
 class Pictures {
  public:
   explicit Pictures(Size size);
-  void add(const pipeline::MapBand& band);
+  void add(const MapBand& band);
 
   /// Writes albedo.png (sRGB; a relative albedo is scaled, and the sheet says by how much), normal.png,
   /// relit.png, error.png where there is a truth, else status_preview.png, and sheet.png with all of them
@@ -43,4 +43,4 @@ class Pictures {
   report::StatusPreview status_;
 };
 
-}  // namespace weft::app
+}  // namespace weft::solve

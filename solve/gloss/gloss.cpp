@@ -16,7 +16,7 @@
 #include "solver/reflectance/lobe_tint.h"
 #include "solver/uncertainty/calibration_sigma.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 // Where no scale is known a lobe is first sought as if the median albedo were this.
@@ -229,4 +229,4 @@ const solver::Method& Gloss::over(const solver::Method& base) {
   return *methods_.back();
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -14,7 +14,7 @@
 #include "solver/reflectance/lobe_readings.h"
 #include "solver/reflectance/materials.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 class LightCorrection;
 
@@ -79,4 +79,4 @@ class Gloss {
   std::vector<std::unique_ptr<solver::Method>> methods_;  // that over() gave away
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

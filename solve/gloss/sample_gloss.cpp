@@ -16,7 +16,7 @@
 #include "solver/reflectance/measured_lobe.h"
 #include "solver/sample_tiles.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 // A prime: pixel i times it meets every pixel once.
@@ -154,4 +154,4 @@ GlossSamples by_leds(const GlossSamples& samples, std::span<const int> leds) {
   return chosen;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

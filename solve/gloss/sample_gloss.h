@@ -10,7 +10,7 @@
 #include "solve/photographs/photographs.h"
 #include "solver/method.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// At most so many pixels of a pose are fitted: more say nothing of a lobe that model error does not drown.
 inline constexpr std::size_t kGlossPixels = 4000;
@@ -24,4 +24,4 @@ Result<GlossSamples> sample_gloss(const Photographs& photographs, const solver::
 /// The same pixels with the readings of these LEDs, in this order; of one that is not there none counts.
 GlossSamples by_leds(const GlossSamples& samples, std::span<const int> leds);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

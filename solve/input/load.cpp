@@ -20,13 +20,10 @@
 #include "solve/levels/reference.h"
 #include "solve/photographs/plane_weights.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 namespace fs = std::filesystem;
-using pipeline::FramesBeside;
-using pipeline::Photographs;
-using pipeline::SolvePlan;
 
 // Frames of one body have one set of levels.
 Result<void> check_levels(const RawFrame& frame, const RawFrame& first, const fs::path& file) {
@@ -86,8 +83,9 @@ Result<std::vector<Photosite>> photosites_named_by(const std::filesystem::path& 
 Result<void> read_mosaics(const SolvePlan& plan, const JobContext& context, Photographs& photographs,
                           FramesBeside& beside) {
   const std::vector<Shot> shots = plan.frames();
-  Result<std::vector<RawFrame>> frames = read_frames<RawFrame>(
-      shots, context, [&](const Shot& shot) { return read_raw_shot(plan.session, shot, plan.size); });
+  Result<std::vector<RawFrame>> frames = read_frames<RawFrame>(shots, context, [&](const Shot& shot) {
+    return capture::read_raw_shot(plan.session, shot, plan.size);
+  });
   if (!frames) return std::move(frames).error();
   for (std::size_t i = 1; i < frames->size(); ++i) {
     if (Result<void> ok = check_levels((*frames)[i], frames->front(), plan.session.path_of(shots[i])); !ok)
@@ -97,8 +95,8 @@ Result<void> read_mosaics(const SolvePlan& plan, const JobContext& context, Phot
   std::optional<RawFrame> dark;
   if (plan.dark) dark = std::move(take(*frames, 1).front());
   const Shot& first = plan.lit.front();
-  pipeline::Mosaics mosaics(std::move(lit), std::move(dark), *plan.calibration.response,
-                            {first.exposure_us, first.iso});
+  Mosaics mosaics(std::move(lit), std::move(dark), *plan.calibration.response,
+                  {first.exposure_us, first.iso});
   beside.repeats = mosaics.alike(take(*frames, plan.repeats.size()));
   if (!plan.parallel.empty()) photographs.parallel = mosaics.alike(take(*frames, plan.parallel.size()));
   beside.brackets = std::move(*frames);
@@ -129,7 +127,7 @@ Result<void> read_developed(const SolvePlan& plan, const JobContext& context, Ph
     mask = std::move(*read);
   }
   const auto read_one = [&](const Shot& shot) -> Result<Image<float>> {
-    if (plan.is_of_rig) return read_developed_shot(plan.session, shot);
+    if (plan.is_of_rig) return capture::read_developed_shot(plan.session, shot);
     Result<Image<float>> image = read_linear_image(plan.session.path_of(shot), plan.transfer, plan.clipped);
     if (image && mask) hide_outside(*mask, *image);
     return image;
@@ -145,9 +143,9 @@ Result<void> read_developed(const SolvePlan& plan, const JobContext& context, Ph
       if (plan.is_of_rig) scale(image, 1 / (first.exposure_us * 1e-6 * first.iso / 100));
     }
   }
-  photographs.frames = pipeline::Developed{std::move(lit)};
-  beside.repeats = pipeline::Developed{take(*frames, plan.repeats.size())};
-  if (!plan.parallel.empty()) photographs.parallel = pipeline::Developed{std::move(*frames)};
+  photographs.frames = Developed{std::move(lit)};
+  beside.repeats = Developed{take(*frames, plan.repeats.size())};
+  if (!plan.parallel.empty()) photographs.parallel = Developed{std::move(*frames)};
   return {};
 }
 
@@ -215,17 +213,16 @@ Result<Photographs> load_pose(const SolvePlan& plan, const JobContext& context) 
   FramesBeside beside;
   const auto read = plan.raw ? read_mosaics : read_developed;
   if (Result<void> ok = read(plan, context, *photographs, beside); !ok) return std::move(ok).error();
-  if (Result<void> met = pipeline::meet_conditions({plan, beside, *photographs, context}); !met)
+  if (Result<void> met = meet_conditions({plan, beside, *photographs, context}); !met)
     return std::move(met).error();
   // Figures were published of luminance.
-  if (plan.clipped == Clipped::kMark)
-    photographs->plane_weights = pipeline::measure_plane_weights(*photographs);
+  if (plan.clipped == Clipped::kMark) photographs->plane_weights = measure_plane_weights(*photographs);
   return photographs;
 }
 
 // What the other pose says of the lobe, and is warned of in it.
-Result<pipeline::GlossSamples> sample_pose(const SolvePlan& plan, const JobContext& context,
-                                           std::vector<std::string>& warnings) {
+Result<GlossSamples> sample_pose(const SolvePlan& plan, const JobContext& context,
+                                 std::vector<std::string>& warnings) {
   const Result<Photographs> photographs = load_pose(plan, context);
   if (!photographs) return photographs.error();
   for (const std::string& warning : photographs->conditions.warnings)
@@ -242,9 +239,8 @@ std::uint64_t memory_needed(const SolvePlan& plan, int threads) {
   if (!plan.is_of_rig) return pixels * 12 * (frames + 4);
   const std::size_t decoding = std::min(static_cast<std::size_t>(threads), frames);
   const std::uint64_t bytes_a_pixel = plan.raw ? 2 : 12;
-  const std::uint64_t of_level = plan.extent == solver::Extent::kWholeFrame
-                                     ? pixels * pipeline::reference_bytes_a_pixel(plan.raw ? 1 : 3)
-                                     : 0;
+  const std::uint64_t of_level =
+      plan.extent == solver::Extent::kWholeFrame ? pixels * reference_bytes_a_pixel(plan.raw ? 1 : 3) : 0;
   return pixels * bytes_a_pixel * (frames + decoding) + of_level +
          static_cast<std::uint64_t>(plan.size.width) * 128 * 150 + (std::uint64_t{64} << 20);
 }
@@ -252,7 +248,7 @@ std::uint64_t memory_needed(const SolvePlan& plan, int threads) {
 Result<Photographs> load_photographs(const SolvePlan& plan, const JobContext& context) {
   if (!plan.second_pose) return load_pose(plan, context);
   std::vector<std::string> warnings;
-  Result<pipeline::GlossSamples> samples = sample_pose(*plan.second_pose, context, warnings);
+  Result<GlossSamples> samples = sample_pose(*plan.second_pose, context, warnings);
   if (!samples) return std::move(samples).error();
   Result<Photographs> photographs = load_pose(plan, context);
   if (!photographs) return photographs;
@@ -261,4 +257,4 @@ Result<Photographs> load_photographs(const SolvePlan& plan, const JobContext& co
   return photographs;
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -12,7 +12,7 @@
 #include "core/base/number.h"
 #include "solve/input/photo_mask.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,4 +244,4 @@ Result<SolvePlan> plan_photos(const PhotoOptions& options) {
   return plan;
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -8,9 +8,7 @@
 #include "core/image_io/linear_image.h"
 #include "solve/photographs/solve_plan.h"
 
-namespace weft::app {
-
-using pipeline::SolvePlan;
+namespace weft::solve {
 
 /// Where photographs under distant lights are: one of `folder` and `light_file` is named.
 struct PhotoOptions {
@@ -29,4 +27,4 @@ struct PhotoOptions {
 /// light or a picture that cannot be used, and for fewer than three.
 Result<SolvePlan> plan_photos(const PhotoOptions& options);
 
-}  // namespace weft::app
+}  // namespace weft::solve

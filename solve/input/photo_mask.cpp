@@ -15,7 +15,7 @@
 #include "core/image_io/image_io.h"
 #include "core/image_io/linear_image.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,4 +109,4 @@ Result<Image<std::uint8_t>> read_mask(const fs::path& file, Size size) {
   return inside;
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -9,7 +9,7 @@
 
 // Which pixels of photographs are cloth, as somebody painted it.
 
-namespace weft::app {
+namespace weft::solve {
 
 /// The picture in the folder that is called mask, in capitals or not and of any format that photographs have;
 /// empty where there is none. kBadData where there are several.
@@ -21,4 +21,4 @@ Result<std::filesystem::path> find_mask(const std::filesystem::path& folder);
 /// nothing is over one half although there is more than black.
 Result<Image<std::uint8_t>> read_mask(const std::filesystem::path& file, Size size);
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -14,14 +14,14 @@
 #include "core/rig/suits.h"
 #include "solve/session/left_out_shots.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 namespace fs = std::filesystem;
 
 // Takes away what a person left out.
 void leave_out_by_person(SolvePlan& plan) {
-  const std::vector<int> indices = library::left_out(plan.session);
+  const std::vector<int> indices = left_out(plan.session);
   std::erase_if(plan.session.shots, [&](const Shot& shot) {
     if (std::ranges::find(indices, shot.index) == indices.end()) return false;
     plan.warnings.push_back(fmt::format("{} was left out: a person said so", shot.file));
@@ -142,7 +142,7 @@ SolveInput input_of(const SolvePlan& plan) {
 // The session, as far as it says itself what is solved.
 Result<SolvePlan> begin_plan(const SessionOptions& options) {
   SolvePlan plan;
-  Result<Session> session = read_complete_session(options.folder);
+  Result<Session> session = capture::read_complete_session(options.folder);
   if (!session) return std::move(session).error();
   plan.session = std::move(*session);
   const fs::path& folder = plan.session.folder;
@@ -169,7 +169,7 @@ Result<Calibration> calibration_of(const Session& session, const fs::path& named
 
 // The size that all frames have.
 Result<Size> look_at_headers(const SolvePlan& plan) {
-  FrameHeaders headers(
+  capture::FrameHeaders headers(
       plan.session, plan.calibration,
       "name the calibration of this rig with --calibration, or calibrate the rig as it is now");
   for (const Shot& shot : plan.frames()) {
@@ -229,4 +229,4 @@ Result<void> plan_second_pose(const fs::path& folder, const solver::MethodName& 
   return {};
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -9,9 +9,7 @@
 #include "solve/photographs/solve_plan.h"
 #include "solver/method.h"
 
-namespace weft::app {
-
-using pipeline::SolvePlan;
+namespace weft::solve {
 
 /// Which session is solved, and by which of its LEDs.
 struct SessionOptions {
@@ -35,4 +33,4 @@ Result<SolvePlan> plan_unopened(const SessionOptions& options, const Calibration
 Result<void> plan_second_pose(const std::filesystem::path& folder, const solver::MethodName& method,
                               const SessionOptions& first, SolvePlan& plan);
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -11,7 +11,7 @@
 #include "solve/levels/stages.h"
 #include "solve/photographs/tile_reader.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 // Readings of one channel that make one of a cell: their mean, or the value of the first that cannot be
@@ -122,4 +122,4 @@ Result<Photographs> half_size(const Photographs& photographs, int threads) {
   return half;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

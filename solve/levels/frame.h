@@ -16,7 +16,7 @@
 #include "solver/left_out/left_out.h"
 #include "solver/method.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// What solving a frame said.
 struct FrameFacts {
@@ -44,4 +44,4 @@ Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::Met
 /// used is as unusable. An odd last row or column is left out.
 Result<Photographs> half_size(const Photographs& photographs, int threads);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -13,7 +13,7 @@
 #include "solve/photographs/picture_axes.h"
 #include "solve/photographs/samples.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 Vec3 normal_of(const SolvedFrame& frame, int x, int y) {
@@ -230,4 +230,4 @@ Stage correction_stage() {
           correct_readings};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -9,7 +9,7 @@
 #include "solver/gates/gates.h"
 #include "solver/left_out/left_out.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 struct ReferenceOptions {
   int most_rounds = 4;
@@ -68,4 +68,4 @@ constexpr std::uint64_t reference_bytes_a_pixel(int planes) {
   return 3 * sizeof(float) * (3 + static_cast<std::uint64_t>(planes)) + 2 * sizeof(float) + 33;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -15,7 +15,7 @@
 #include "solver/registration/far_shifts.h"
 #include "solver/sample_tiles.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 // The sample tiles of photographs, each with readings of its own.
@@ -142,4 +142,4 @@ Result<MovedShots> find_far_shifts(const Photographs& photographs, const JobCont
   return result;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

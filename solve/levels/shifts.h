@@ -9,7 +9,7 @@
 #include "solve/photographs/photographs.h"
 #include "solver/registration/registration.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 enum class ShiftVerdict {
   kStill,    ///< no shift that its error does not explain, or one that costs under kLeastCost_deg
@@ -55,4 +55,4 @@ struct MovedShots {
 /// Errors: kInterrupted, and those of cut().
 Result<MovedShots> find_far_shifts(const Photographs& photographs, const JobContext& context);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -5,7 +5,7 @@
 
 #include "solver/height/height.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 SolvedRelief::SolvedRelief(const Photographs& photographs, SolvedFrame frame,
                            const ReferenceOptions& reference, int threads)
@@ -45,4 +45,4 @@ LightCorrection SolvedRelief::early_correction() const {
           threads_};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -10,7 +10,7 @@
 #include "solve/photographs/photographs.h"
 #include "solver/transport/relief.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// A solved frame as a relief, and what its light does to readings.
 class SolvedRelief {
@@ -40,4 +40,4 @@ class SolvedRelief {
   solver::Relief relief_;
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -23,7 +23,7 @@
 // A level of accuracy is a list of stages: each finds a better way to solve the frame than the stages before
 // it left, or sends its maps on better than they come, and one of them solves it.
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// A solve under way: what it is given, and what each stage leaves for those that follow.
 struct Solving {
@@ -78,4 +78,4 @@ Result<FrameFacts> solve_by(std::span<const Stage> stages, const Photographs& ph
 /// The list without the stages of this name.
 std::vector<Stage> without(std::string_view name, std::vector<Stage> stages);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

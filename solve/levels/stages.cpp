@@ -10,7 +10,7 @@
 #include "solve/correction/leave_out_lights.h"
 #include "solve/gloss/gloss.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 Planes solved_planes(const Solving& s) {
@@ -158,4 +158,4 @@ Stage check_stage() {
           [](const Solving& s) { return !s.facts.left_out; }, leave_out_each_light};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -7,7 +7,7 @@
 #include "solve/levels/stage.h"
 #include "solver/method.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// What a level or method is, in order, as docs/accuracy.md has it. A level begins with the method of its
 /// name, robust and reference with standard. Lists of higher levels have more stages and no other order, so
@@ -33,4 +33,4 @@ Stage second_lobe_stage();
 Stage comparison_stage();
 Stage correction_stage();
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -6,7 +6,7 @@
 #include "solver/left_out/blocks.h"
 #include "solver/sample_tiles.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 // How much of each there is in a frame; one of `lobe`.
@@ -33,4 +33,4 @@ SolveWork carried_over(const SolveWork& work, Size from, Size to) {
   return carried;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -3,7 +3,7 @@
 
 #include "core/image/image.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// Wall seconds of a solve, by what they grow with.
 struct SolveWork {
@@ -19,4 +19,4 @@ struct SolveWork {
 /// What work that was measured on one frame would take on another of the same cloth.
 SolveWork carried_over(const SolveWork& work, Size from, Size to);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

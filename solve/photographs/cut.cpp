@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 template <typename T>
@@ -76,4 +76,4 @@ Result<Photographs> cut(const Photographs& whole, Rect area) {
   return part;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

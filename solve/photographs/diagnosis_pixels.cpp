@@ -10,7 +10,7 @@
 #include "solver/method.h"
 #include "solver/sample_tiles.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 // One photosite, or the weighted sum of three channels over their strength.
@@ -83,4 +83,4 @@ solver::Evidence read_evidence(const Photographs& photographs) {
   return thinned(std::move(all), most);
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

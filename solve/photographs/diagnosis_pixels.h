@@ -4,7 +4,7 @@
 #include "solve/photographs/photographs.h"
 #include "solver/diagnosis/evidence_row.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// Pixels for a diagnosis (solver/diagnosis/diagnosis.h), evenly from the sample tiles
 /// (solver/sample_tiles.h): at most 1600, or fewer where there are more than twenty lights, down to 400;
@@ -12,4 +12,4 @@ namespace weft::pipeline {
 /// weighted sum of the channels, each over its strength, stands for the reading.
 solver::Evidence read_evidence(const Photographs& photographs);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "solver/kernels/demosaic.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr int kCell = 2;
@@ -209,4 +209,4 @@ void ModelPart::fill(Rect rows, const std::array<View<const float>, 3>& albedo, 
   });
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

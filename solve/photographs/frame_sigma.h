@@ -9,7 +9,7 @@
 #include "solver/kernels/model_angles.h"
 #include "solver/left_out/block_choice.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// Solved maps of a band of rows, (0, 0) at its corner.
 struct SolvedRows {
@@ -72,4 +72,4 @@ class ModelPart {
   std::vector<Block> blocks_;
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -9,7 +9,7 @@
 #include "core/base/vec.h"
 #include "solver/reflectance/pixel_fit.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// Pixels of one cloth and where a solve left them: what a lobe is sought in.
 struct GlossSamples {
@@ -31,4 +31,4 @@ struct GlossSamples {
   }
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -7,7 +7,7 @@
 
 #include "core/solve/solve_record.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 std::vector<View<const float>> Developed::readings(std::size_t k, Rect part, View<float> /*scratch*/) const {
   return {rgb[k].plane(0).crop(part), rgb[k].plane(1).crop(part), rgb[k].plane(2).crop(part)};
@@ -131,4 +131,4 @@ void mark_replaced(const std::vector<Photosite>& replaced, Rect band, View<std::
   }
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -25,7 +25,7 @@
 #include "solve/photographs/gloss_samples.h"
 #include "solver/method.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// The planes of readings that a photograph has: one mosaic with the filters `cfa`, or R, G and B.
 struct Planes {
@@ -136,4 +136,4 @@ Result<void> leave_out(std::span<const std::size_t> lights, Photographs& photogr
 /// Marks with INVALID_READING the pixels of `band`, as high as `status`, whose counts were replaced.
 void mark_replaced(const std::vector<Photosite>& replaced, Rect band, View<std::uint16_t> status);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 Mat3 picture_from_rig(const std::optional<CameraModel>& camera) {
   double c = 1, s = 0;
@@ -19,4 +19,4 @@ Mat3 picture_from_rig(const std::optional<CameraModel>& camera) {
   return {{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

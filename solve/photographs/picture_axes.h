@@ -6,7 +6,7 @@
 #include "core/base/vec.h"
 #include "core/rig/camera.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// Turns directions of the rig frame into the axes of the picture: x along its columns, y up its rows, z up
 /// from the table. A turn about z alone, since heights are those above the table: a camera that leans by two
@@ -14,4 +14,4 @@ namespace weft::pipeline {
 /// directions are given by these axes, and nothing turns.
 Mat3 picture_from_rig(const std::optional<CameraModel>& camera);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

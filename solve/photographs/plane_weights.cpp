@@ -12,7 +12,7 @@
 #include "solver/in_double/pixelwise.h"
 #include "solver/sample_tiles.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr int kEvery = 7;  // columns and lines
@@ -55,4 +55,4 @@ std::array<double, 3> measure_plane_weights(const Photographs& photographs) {
   return weights;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -5,7 +5,7 @@
 
 #include "solve/photographs/photographs.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// What each channel of RGB tells of the normal that the three share. A channel over its strength is x_c =
 /// a_c (n . l) + e_c with albedo a_c and noise e_c of variance v_c, so that sum w_c x_c has the signal sum
@@ -17,4 +17,4 @@ namespace weft::pipeline {
 /// Luminance for mosaics, and where fewer than 100 pixels show a residual.
 std::array<double, 3> measure_plane_weights(const Photographs& photographs);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

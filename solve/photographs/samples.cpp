@@ -13,7 +13,7 @@
 #include "solver/in_double/pixel.h"
 #include "solver/sample_tiles.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 // Counts readings that can be used, and those that are dark against the bright ones of their pixel.
@@ -113,4 +113,4 @@ Result<solver::Gates> measure_gates(const std::vector<SampleMaps>& samples, cons
   return solver::measure_gates(all, limits, photographs.albedo_scale);
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -9,7 +9,7 @@
 #include "solver/gates/gates.h"
 #include "solver/method.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// What a method makes of the sample tiles (solver/sample_tiles.h), without their surroundings: the albedo
 /// of a mosaic is that of each photosite in its own colour, of RGB that of green.
@@ -37,4 +37,4 @@ std::vector<SampleMaps> solve_samples(const Photographs& photographs, const solv
 /// the bit are holes, which no gate is shut for.
 Result<solver::Gates> measure_gates(const std::vector<SampleMaps>& samples, const Photographs& photographs);
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/photographs/solve_plan.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 std::vector<Shot> SolvePlan::frames() const {
   std::vector<Shot> all = lit;
@@ -24,4 +24,4 @@ std::vector<int> SolvePlan::numbers() const {
   return all;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

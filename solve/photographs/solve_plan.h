@@ -14,7 +14,7 @@
 #include "core/solve/solve_parts.h"
 #include "solver/method.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// What will be solved, looked at but not decoded: shots of a session, or photographs that no rig took. Those
 /// stand as lit shots too, led being their number in the list, by a calibration that has their lights alone.
@@ -49,4 +49,4 @@ struct SolvePlan {
   std::vector<int> numbers() const;
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

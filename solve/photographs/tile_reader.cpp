@@ -8,7 +8,7 @@
 
 #include "solver/kernels/demosaic.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 using solver::kDemosaicReach;  // what is read around a tile
 
@@ -103,4 +103,4 @@ std::array<double, 3> TileReader::flux_of(std::size_t k) const {
   return std::get<DistantLights>(lights).lights[k].irradiance_rgb;
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -11,7 +11,7 @@
 #include "solve/photographs/photographs.h"
 #include "solver/method.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// What becomes of mosaics as they are read. Developed photographs stay as they are.
 enum class ReadAs {
@@ -41,4 +41,4 @@ class TileReader {
   std::vector<View<const float>> views_;
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -8,7 +8,7 @@
 
 #include "core/base/percent.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 std::optional<double> known(double value) {
@@ -90,4 +90,4 @@ std::string left_out_words(const LeftOutFacts& facts) {
   return words + fmt::format("\n  {}", kLeftOutBlindSpot);
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -13,7 +13,7 @@
 
 // What lights that were left out tell, in the forms that people read it in.
 
-namespace weft::app {
+namespace weft::solve {
 
 /// None where no reading was predicted. `numbers` are those of the lights.
 std::optional<LeftOutFacts> facts_of(const solver::LeftOut& left_out, const std::vector<int>& numbers);
@@ -32,4 +32,4 @@ report::Section left_out_section(const std::optional<LeftOutFacts>& facts, const
 /// Lines for the terminal.
 std::string left_out_words(const LeftOutFacts& facts);
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/report/reflectance_facts.h"
 
-namespace weft::app {
+namespace weft::solve {
 
 void describe(Fields& fields, FittedLobe& l) {
   fields.value({"family", "ggx, anisotropic-ggx, beckmann, cloth or, since 1.2, two-ggx", {}, kUnlessEmpty},
@@ -99,4 +99,4 @@ void describe(Fields& fields, GlossSaid& g) {
   fields.value({"says", "The lobes, or why there is none"}, g.says);
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

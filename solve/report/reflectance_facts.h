@@ -13,7 +13,7 @@
 
 // What reflectance.json says of a cloth's lobes (weft.reflectance/1.2).
 
-namespace weft::app {
+namespace weft::solve {
 
 /// A lobe as it was fitted; the numbers that its family has.
 struct FittedLobe {
@@ -85,4 +85,4 @@ struct GlossSaid {
 };
 void describe(Fields& fields, GlossSaid& said);
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -14,7 +14,7 @@
 #include "report/plot_svg.h"
 #include "solve/files/gloss_maps.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 using solver::LobeRefusal;
@@ -96,7 +96,7 @@ std::vector<double> listed(const std::array<double, 3>& rgb) {
 }
 
 // Adds R, G and B: what a neutral lobe does not say.
-void add_tint(const MeasuredLobe& lobe, const pipeline::F0OfChannels& channels, AlbedoScale scale,
+void add_tint(const MeasuredLobe& lobe, const F0OfChannels& channels, AlbedoScale scale,
               LobeCluster& cluster) {
   for (const double f0 : channels.f0) cluster.tint.push_back(f0 / lobe.lobe.f0);
   cluster.sigma.tint = listed(lobe.tint->sigma_of_tint);
@@ -118,7 +118,7 @@ LobeSigma sigma_of(const MeasuredLobe& lobe) {
   return sigma;
 }
 
-LobeCluster measured_cluster(const MeasuredLobe& lobe, const std::optional<pipeline::F0OfChannels>& channels,
+LobeCluster measured_cluster(const MeasuredLobe& lobe, const std::optional<F0OfChannels>& channels,
                              AlbedoScale scale) {
   LobeCluster cluster = {.is_observable = true, .lobe = fitted(lobe.lobe), .sigma = sigma_of(lobe)};
   if (lobe.lobe.family == solver::LobeFamily::kAnisotropicGgx) cluster.weft_share = lobe.weft_share;
@@ -140,7 +140,7 @@ LobeCluster measured_cluster(const MeasuredLobe& lobe, const std::optional<pipel
   return cluster;
 }
 
-LobeCluster cluster_of(const MeasuredLobe& lobe, const std::optional<pipeline::F0OfChannels>& channels,
+LobeCluster cluster_of(const MeasuredLobe& lobe, const std::optional<F0OfChannels>& channels,
                        AlbedoScale scale, bool of_film_pair) {
   LobeCluster cluster;
   if (lobe.is_measured()) {
@@ -212,11 +212,11 @@ void add_cluster(const LobeCluster& cluster, report::Section& section) {
 
 }  // namespace
 
-ReflectanceFacts reflectance_facts(const pipeline::GlossFacts& facts, AlbedoScale scale) {
+ReflectanceFacts reflectance_facts(const GlossFacts& facts, AlbedoScale scale) {
   ReflectanceFacts said = {
       .albedo_scale = scale, .share = facts.share, .has_second_pose = facts.of_second_pose};
   for (std::size_t l = 0; l < facts.lobes.size(); ++l) {
-    std::optional<pipeline::F0OfChannels> channels;
+    std::optional<F0OfChannels> channels;
     if (l < facts.f0_of_channels.size()) channels = facts.f0_of_channels[l];
     said.clusters.push_back(cluster_of(facts.lobes[l], channels, scale, facts.of_film_pair));
   }
@@ -255,4 +255,4 @@ report::Section reflectance_section(const std::optional<ReflectanceFacts>& facts
   return section;
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

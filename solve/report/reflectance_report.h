@@ -12,10 +12,10 @@
 
 // What a solve found of a cloth's reflectance, for reflectance.json, solve.json and people.
 
-namespace weft::app {
+namespace weft::solve {
 
 /// Where the scale of the albedo is relative so is f0, and what is said is f0 over the albedo.
-ReflectanceFacts reflectance_facts(const pipeline::GlossFacts& facts, AlbedoScale scale);
+ReflectanceFacts reflectance_facts(const GlossFacts& facts, AlbedoScale scale);
 
 /// What solve.json says of it.
 ReflectanceSummary summary_of(const ReflectanceFacts& facts);
@@ -31,4 +31,4 @@ GlossSaid reflectance_said(const ReflectanceFacts& facts);
 /// The section of a report: the lobe drawn over the readings, and its numbers. Empty of none.
 report::Section reflectance_section(const std::optional<ReflectanceFacts>& facts);
 
-}  // namespace weft::app
+}  // namespace weft::solve

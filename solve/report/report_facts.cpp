@@ -3,7 +3,7 @@
 
 #include "core/describe/field_json.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 using solver::FaultKind;
@@ -148,4 +148,4 @@ Json json_of(const SolveReportFacts& facts) {
   return json;
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -14,7 +14,7 @@
 
 // What report.json says of a solve (weft.solve-report/1). Numbers that are not finite are null there.
 
-namespace weft::app {
+namespace weft::solve {
 
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
@@ -93,4 +93,4 @@ struct SolveReportFacts {
 void describe(Fields& fields, SolveReportFacts& facts);
 Json json_of(const SolveReportFacts& facts);
 
-}  // namespace weft::app
+}  // namespace weft::solve

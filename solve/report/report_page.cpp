@@ -13,7 +13,7 @@
 #include "solve/report/reflectance_report.h"
 #include "solve/report/solve_report.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 double finite_or(double value, double otherwise = 0) {
@@ -204,4 +204,4 @@ std::string report_page(const SolveReportFacts& report, const std::vector<report
   return html_of(page);
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -20,7 +20,7 @@
 #include "solver/method.h"
 #include "solver/uncertainty/model_sigma.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 namespace fs = std::filesystem;
@@ -252,8 +252,7 @@ double AngleHistogram::quantile(double share) const {
 
 MapSummary::MapSummary(Size size) : sigma_(size, 1, kGridSide), row_({size.width, 1}) {}
 
-void MapSummary::add(const pipeline::MapBand& band, View<const float> normal_deg,
-                     View<const float> calibration_deg) {
+void MapSummary::add(const MapBand& band, View<const float> normal_deg, View<const float> calibration_deg) {
   for (int y = 0; y < band.albedo_rows.height(); ++y) {
     const float* sigma = normal_deg.row(y);
     for (int x = 0; x < row_.width(); ++x) {
@@ -338,12 +337,11 @@ LightCondition condition_over(const LightField& field, Size size) {
   return {median(std::move(conditions)), worst};
 }
 
-PhotographsSummary summarize_photographs(const pipeline::Photographs& photographs,
-                                         const std::vector<int>& picked,
+PhotographsSummary summarize_photographs(const Photographs& photographs, const std::vector<int>& picked,
                                          const std::vector<std::string>& warnings,
                                          const JobContext& context) {
   PhotographsSummary summary;
-  const solver::Evidence evidence = pipeline::read_evidence(photographs);
+  const solver::Evidence evidence = read_evidence(photographs);
   summary.diagnosis = solver::diagnose(evidence, context.threads);
   summary.outshining = solver::outshining_share(evidence);
   summary.of_session = !photographs.leds.empty();
@@ -375,10 +373,10 @@ std::vector<Verdict> moved_verdicts(const PhotographsSummary& photographs) {
                      say.name(far->moved), far->most_px, percent_words(far->explained)),
          remedy + (can_do_without ? say.or_without(far->moved) : "")}};
   }
-  const pipeline::SessionShifts& shifts = photographs.shifts;
+  const SessionShifts& shifts = photographs.shifts;
   double cost_deg = 0;
   std::vector<std::size_t> lights;
-  for (const std::size_t k : shifts.with(pipeline::ShiftVerdict::kFlagged)) {
+  for (const std::size_t k : shifts.with(ShiftVerdict::kFlagged)) {
     if (!shifts.found || shifts.shots[k].measured.cost_deg <= kLeastWarnedShift_deg) continue;
     cost_deg = std::max(cost_deg, shifts.shots[k].measured.cost_deg);
     lights.push_back(k);
@@ -529,4 +527,4 @@ Result<void> write_report(const fs::path& folder, const SolveReportFacts& report
   return write_file(folder / "report.html", report_page(report, pictures));
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

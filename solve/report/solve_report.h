@@ -23,7 +23,7 @@
 // The report of a solve: what went wrong, and where its error comes from. report.json (weft.solve-report/1,
 // docs/formats.md) holds it, report.html shows it on one page that needs no other file.
 
-namespace weft::app {
+namespace weft::solve {
 
 /// How many pixels have which angle, in bins of one percent from 1e-4 to 180 degrees.
 class AngleHistogram {
@@ -60,8 +60,7 @@ class MapSummary {
   /// `normal_deg` and `calibration_deg` are the channels normal_deg and normal_deg.calibration of sigma.exr
   /// over band.albedo_rows, the second empty where the calibration has no covariance. The band has its
   /// model's part.
-  void add(const pipeline::MapBand& band, View<const float> normal_deg,
-           View<const float> calibration_deg = {});
+  void add(const MapBand& band, View<const float> normal_deg, View<const float> calibration_deg = {});
 
   /// The angle over the share of the cloth that is solved.
   SigmaMap sigma_map() const;
@@ -85,11 +84,11 @@ struct PhotographsSummary {
   bool of_session = true;       ///< lights are LEDs of a rig; else photographs in a list
   bool noise_is_known = false;  ///< the camera's noise was calibrated
   LightCondition condition;
-  double glossy_share = 0;                        ///< of the blocks, solved with a lobe that was measured
-  double outshining = 0;                          ///< share of pixels, solver/diagnosis/highlights.h
-  std::vector<std::string> warnings;              ///< a sentence each, said when the photographs were read
-  pipeline::SessionShifts shifts;                 ///< of the photographs as they were read
-  std::optional<pipeline::MovedShots> far_shifts;  ///< where they were looked for
+  double glossy_share = 0;               ///< of the blocks, solved with a lobe that was measured
+  double outshining = 0;                 ///< share of pixels, solver/diagnosis/highlights.h
+  std::vector<std::string> warnings;     ///< a sentence each, said when the photographs were read
+  SessionShifts shifts;                  ///< of the photographs as they were read
+  std::optional<MovedShots> far_shifts;  ///< where they were looked for
   bool shadow_reach_is_capped = false;
   /// What a session adds: its folder's name, the shot of each LED, and the shots that a person left out.
   std::string session;
@@ -98,8 +97,7 @@ struct PhotographsSummary {
 };
 /// `picked` are the numbers of the lights where photographs were picked from a list; else empty. `warnings`
 /// are what was said when they were read.
-PhotographsSummary summarize_photographs(const pipeline::Photographs& photographs,
-                                         const std::vector<int>& picked,
+PhotographsSummary summarize_photographs(const Photographs& photographs, const std::vector<int>& picked,
                                          const std::vector<std::string>& warnings, const JobContext& context);
 
 /// The scene is called dominated by highlights where this share of pixels has the bit SPECULAR, if highlights
@@ -136,4 +134,4 @@ SolveReportFacts report_facts(const std::string& title, const SolveFacts& solve,
 /// Writes report.json and report.html into the folder of a solve, with the previews that are there.
 Result<void> write_report(const std::filesystem::path& folder, const SolveReportFacts& report);
 
-}  // namespace weft::app
+}  // namespace weft::solve

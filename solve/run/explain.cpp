@@ -18,11 +18,10 @@
 #include "solve/report/reflectance_report.h"
 #include "solve/run/facts_json.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 namespace fs = std::filesystem;
-using pipeline::Photographs;
 
 constexpr Size kCut = {512, 256};
 constexpr Size kLargeCut = {1024, 1024};  // of which pictures and files are timed too
@@ -126,9 +125,9 @@ LevelSeconds scaled(const SolveSeconds& cut, const SharedSeconds& shared, Size f
   // No level takes less a pixel than `fast` does, of which the two cuts are.
   const double least = shared.solve.a_pixel * static_cast<double>(in_cut.pixels()) / (is_half ? 4 : 1);
   const double begin = std::clamp(shared.solve.at(0), 0.0, std::max(0.0, cut.work.frame - least));
-  pipeline::SolveWork growing = cut.work;
+  SolveWork growing = cut.work;
   growing.frame -= begin;
-  const pipeline::SolveWork work = pipeline::carried_over(growing, in_cut, frame);
+  const SolveWork work = carried_over(growing, in_cut, frame);
   seconds.fixed = work.lobe + begin;
   seconds.solve = work.total() + begin;
   seconds.write = shared.write.at(of_maps);
@@ -277,9 +276,9 @@ Result<Ladder> price(const Photographs& photographs, const Frame& frame, const S
 Result<Ladder> explain(Photographs photographs, bool of_session, double read, const SolveOptions& options,
                        const PriceOptions& wanted, const JobContext& context) {
   Stopwatch watch;
-  Result<pipeline::SessionShifts> shifts = register_shots(photographs, context);
+  Result<SessionShifts> shifts = register_shots(photographs, context);
   if (!shifts) return std::move(shifts).error();
-  if (Result<void> ok = leave_out(shifts->with(pipeline::ShiftVerdict::kLeftOut), photographs); !ok)
+  if (Result<void> ok = leave_out(shifts->with(ShiftVerdict::kLeftOut), photographs); !ok)
     return std::move(ok).error();
   return price(photographs, {of_session, read, watch.lap()}, options, wanted, context);
 }
@@ -394,4 +393,4 @@ Json json_of(const Ladder& ladder, std::optional<std::size_t> chosen) {
           {"chosen", chosen ? Json(ladder.levels[*chosen].name()) : Json()}};
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

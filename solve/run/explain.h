@@ -19,7 +19,7 @@
 // What each level of the solver would give and cost, measured on this cloth and this machine before it is
 // paid.
 
-namespace weft::app {
+namespace weft::solve {
 
 /// Wall seconds of one level on the whole frame, by the phases of a solve. What is not measured on the frame
 /// itself is told by solving cuts of it.
@@ -113,4 +113,4 @@ Result<std::size_t> choose_level(const Ladder& ladder, const LevelWish& wish);
 /// name or null}.
 Json json_of(const Ladder& ladder, std::optional<std::size_t> chosen);
 
-}  // namespace weft::app
+}  // namespace weft::solve

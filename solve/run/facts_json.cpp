@@ -8,16 +8,16 @@
 
 #include "core/base/vec.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
-const char* verdict_of(const pipeline::ShotShift& shot, bool found) {
+const char* verdict_of(const ShotShift& shot, bool found) {
   if (!found) return "not registered";
-  if (shot.verdict == pipeline::ShiftVerdict::kLeftOut) return "left out";
-  return shot.verdict == pipeline::ShiftVerdict::kFlagged ? "flagged" : "still";
+  if (shot.verdict == ShiftVerdict::kLeftOut) return "left out";
+  return shot.verdict == ShiftVerdict::kFlagged ? "flagged" : "still";
 }
 
-std::vector<std::string> names_of(const pipeline::LightStages& stages) {
+std::vector<std::string> names_of(const LightStages& stages) {
   std::vector<std::string> names;
   if (stages.shadows) names.emplace_back("shadows");
   if (stages.interreflection) names.emplace_back("interreflection");
@@ -43,11 +43,11 @@ SolvedBy facts_of(const solver::SolveTally& tally) {
           tally.unsolved,  tally.rejected_readings};
 }
 
-SharpeningFacts facts_of(const pipeline::DeblurFacts& facts) {
+SharpeningFacts facts_of(const DeblurFacts& facts) {
   return {facts.sigma_px, facts.mean_share};
 }
 
-ReferenceLevelFacts facts_of(const pipeline::ReferenceFacts& facts) {
+ReferenceLevelFacts facts_of(const ReferenceFacts& facts) {
   ReferenceLevelFacts said = {.stages = names_of(facts.stages),
                               .rounds = {},
                               .left_out = {},
@@ -55,7 +55,7 @@ ReferenceLevelFacts facts_of(const pipeline::ReferenceFacts& facts) {
                               .published = facts.robust_is_published ? "robust" : "reference",
                               .over_robust = gain_of(facts.over_robust),
                               .shadow_reach_is_capped = facts.shadow_reach_is_capped};
-  for (const pipeline::ReferenceRound& round : facts.rounds) {
+  for (const ReferenceRound& round : facts.rounds) {
     said.rounds.push_back({round.turned_deg, names_of(round.stages), round.stages.albedo_scale,
                            round.slope_residual_rms, round.is_refused});
   }
@@ -66,7 +66,7 @@ ReferenceLevelFacts facts_of(const pipeline::ReferenceFacts& facts) {
   return said;
 }
 
-std::vector<std::string> warnings_of(const pipeline::ReferenceFacts& facts) {
+std::vector<std::string> warnings_of(const ReferenceFacts& facts) {
   std::vector<std::string> said;
   if (facts.choice.scale_is_open) {
     said.emplace_back(
@@ -80,7 +80,7 @@ std::vector<std::string> warnings_of(const pipeline::ReferenceFacts& facts) {
         "{:.2f} percent of the brightness",
         -100 * facts.over_robust.mean));
   }
-  if (std::ranges::any_of(facts.rounds, &pipeline::ReferenceRound::is_refused)) {
+  if (std::ranges::any_of(facts.rounds, &ReferenceRound::is_refused)) {
     said.emplace_back(
         "reference ended early: a round turned the normals no less than the one before, so its normals were "
         "not used");
@@ -88,16 +88,16 @@ std::vector<std::string> warnings_of(const pipeline::ReferenceFacts& facts) {
   return said;
 }
 
-std::vector<RegisteredShot> facts_of(const pipeline::SessionShifts& shifts, const std::vector<int>& leds) {
+std::vector<RegisteredShot> facts_of(const SessionShifts& shifts, const std::vector<int>& leds) {
   std::vector<RegisteredShot> list;
   for (std::size_t k = 0; k < shifts.shots.size(); ++k) {
-    const pipeline::ShotShift& shot = shifts.shots[k];
+    const ShotShift& shot = shifts.shots[k];
     const solver::ShotRegistration& m = shot.measured;
     list.push_back({k < leds.size() ? leds[k] : static_cast<int>(k) + 1, m.shift.dx_px, m.shift.dy_px,
-                    degrees(m.shift.turn), m.sigma_px, m.cost_deg,
-                    shot.verdict == pipeline::ShiftVerdict::kLeftOut, verdict_of(shot, shifts.found)});
+                    degrees(m.shift.turn), m.sigma_px, m.cost_deg, shot.verdict == ShiftVerdict::kLeftOut,
+                    verdict_of(shot, shifts.found)});
   }
   return list;
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

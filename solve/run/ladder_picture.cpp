@@ -14,7 +14,7 @@
 #include "solve/files/pictures.h"
 #include "solver/method.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ Result<std::vector<LadderStep>> draw_ladder(const SessionOptions& input, const S
   return steps;
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

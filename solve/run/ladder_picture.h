@@ -11,7 +11,7 @@
 #include "solve/input/session_input.h"
 #include "solve/run/solve_session.h"
 
-namespace weft::app {
+namespace weft::solve {
 
 /// One level of a ladder picture.
 struct LadderStep {
@@ -27,4 +27,4 @@ struct LadderStep {
 Result<std::vector<LadderStep>> draw_ladder(const SessionOptions& input, const SolveOptions& options,
                                             const std::filesystem::path& file, const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -6,7 +6,7 @@
 
 #include "solver/method.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 constexpr NumberRange kTileSide = {1, 1 << 20};
@@ -179,4 +179,4 @@ void describe(Fields& fields, PriceRequest& request) {
   describe_readings(fields, request.solve);
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

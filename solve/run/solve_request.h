@@ -9,7 +9,7 @@
 #include "solve/run/explain.h"
 #include "solve/run/solve_session.h"
 
-namespace weft::app {
+namespace weft::solve {
 
 /// What `weft solve` and a job that solves are told: one of `session` and `photos` is named.
 struct SolveRequest {
@@ -37,4 +37,4 @@ struct PriceRequest {
 };
 void describe(Fields& fields, PriceRequest& request);
 
-}  // namespace weft::app
+}  // namespace weft::solve

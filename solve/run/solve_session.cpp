@@ -32,7 +32,7 @@
 #include "solve/run/facts_json.h"
 #include "solve/session/left_out_shots.h"
 
-namespace weft::app {
+namespace weft::solve {
 namespace {
 
 namespace fs = std::filesystem;
@@ -102,7 +102,7 @@ double seconds_until_published(const SolveSeconds& s) {
 
 // A band as it is written.
 struct FinishedBand {
-  pipeline::MapBand maps;
+  MapBand maps;
   std::vector<View<const float>> sigma;  // the channels of sigma.exr
   View<const float> calibration_deg;     // the calibration's share in the angle, if sigma has one
 };
@@ -112,10 +112,10 @@ struct FinishedBand {
 class Finish {
  public:
   // `photographs` must outlive it.
-  static Result<Finish> make(const pipeline::Photographs& photographs, int threads) {
+  static Result<Finish> make(const Photographs& photographs, int threads) {
     Finish finish;
     if (photographs.light_covariance) {
-      Result<pipeline::CalibrationChannels> made = pipeline::CalibrationChannels::make(photographs, threads);
+      Result<CalibrationChannels> made = CalibrationChannels::make(photographs, threads);
       if (!made) return std::move(made).error();
       finish.calibration_.emplace(std::move(*made));
     }
@@ -127,13 +127,13 @@ class Finish {
   const std::vector<std::string>& sigma_names() const { return sigma_->names(); }
 
   // Valid until the next call.
-  FinishedBand of(const pipeline::MapBand& solved) {
+  FinishedBand of(const MapBand& solved) {
     std::vector<View<const float>> shares;
     if (calibration_) {
       const auto channels = calibration_->of(solved);
       shares.assign(channels.begin(), channels.end());
     }
-    const pipeline::MapBand band = color_ ? color_->of(solved, shares) : solved;
+    const MapBand band = color_ ? color_->of(solved, shares) : solved;
     return {band, sigma_->of(band, shares), calibration_ ? shares.back() : View<const float>()};
   }
 
@@ -145,18 +145,18 @@ class Finish {
     return {};
   }
 
-  std::optional<pipeline::CalibrationChannels> calibration_;
-  std::optional<pipeline::AlbedoColor> color_;
-  std::optional<pipeline::SigmaChannels> sigma_;
+  std::optional<CalibrationChannels> calibration_;
+  std::optional<AlbedoColor> color_;
+  std::optional<SigmaChannels> sigma_;
 };
 
 // Photographs as they are solved, and what was found on the way there.
 struct Prepared {
-  pipeline::Photographs photographs;
+  Photographs photographs;
   std::vector<std::string> warnings;
-  pipeline::Fullness fullness;     // of the photographs as they were read
-  pipeline::SessionShifts shifts;  // of the photographs too
-  std::vector<int> numbers;        // of photographs without a rig, by light
+  Fullness fullness;         // of the photographs as they were read
+  SessionShifts shifts;      // of the photographs too
+  std::vector<int> numbers;  // of photographs without a rig, by light
 };
 
 // What the maps leave behind for those who tell of them.
@@ -190,7 +190,7 @@ class Run {
   }
 
   // `loaded` are photographs that are in memory, registered; else those of the plan are read.
-  Result<SolveReport> run(std::optional<pipeline::Photographs> loaded) {
+  Result<SolveReport> run(std::optional<Photographs> loaded) {
     Stopwatch total;
     const bool is_part = loaded.has_value();
     Result<Prepared> prepared = prepare(std::move(loaded));
@@ -210,28 +210,28 @@ class Run {
   bool is_half() const { return method_.extent == solver::Extent::kHalfSize; }
 
   // Reads the photographs, and does with them what does not need their normals.
-  Result<Prepared> prepare(std::optional<pipeline::Photographs> loaded) {
+  Result<Prepared> prepare(std::optional<Photographs> loaded) {
     if (Result<void> begun = begin(partial_, bytes_of_maps(plan_.size)); !begun)
       return std::move(begun).error();
     const bool is_registered = loaded.has_value();
     if (!loaded) {
-      Result<pipeline::Photographs> read = load_photographs(plan_, context_);
+      Result<Photographs> read = load_photographs(plan_, context_);
       if (!read) return std::move(read).error();
       loaded = std::move(*read);
     }
     Prepared prepared;
-    pipeline::Photographs& photographs = prepared.photographs;
+    Photographs& photographs = prepared.photographs;
     photographs = *std::move(loaded);
     if (!options_.deblur) photographs.spread.reset();
     facts_.conditions = photographs.conditions.facts;
     prepared.warnings = photographs.conditions.warnings;
-    prepared.fullness = pipeline::fullness_of(photographs);
+    prepared.fullness = fullness_of(photographs);
     if (!plan_.is_of_rig) prepared.numbers = plan_.numbers();
     seconds_.read = watch_.lap();
 
     facts_.registration.emplace();
     if (is_half()) {
-      Result<pipeline::Photographs> half = half_size(photographs, context_.threads);
+      Result<Photographs> half = half_size(photographs, context_.threads);
       if (!half) return std::move(half).error();
       photographs = std::move(*half);
     } else if (!is_registered && options_.registration) {
@@ -246,11 +246,11 @@ class Run {
 
   // Finds how the cloth lay in each shot, and leaves out those in which it lay elsewhere.
   Result<void> register_cloth(Prepared& prepared) {
-    Result<pipeline::SessionShifts> found = register_shots(prepared.photographs, context_);
+    Result<SessionShifts> found = register_shots(prepared.photographs, context_);
     if (!found) return std::move(found).error();
     prepared.shifts = std::move(*found);
     facts_.registration = facts_of(prepared.shifts, prepared.photographs.leds);
-    const std::vector<std::size_t> moved = prepared.shifts.with(pipeline::ShiftVerdict::kLeftOut);
+    const std::vector<std::size_t> moved = prepared.shifts.with(ShiftVerdict::kLeftOut);
     for (auto k = moved.rbegin(); k != moved.rend(); ++k) {
       if (*k < prepared.numbers.size())
         prepared.numbers.erase(prepared.numbers.begin() + static_cast<std::ptrdiff_t>(*k));
@@ -261,7 +261,7 @@ class Run {
   // Solves into the files, and says of the photographs what must be said while they are in memory: they are
   // gone afterwards.
   Result<Made> make_maps(Prepared& prepared) {
-    pipeline::Photographs& photographs = prepared.photographs;
+    Photographs& photographs = prepared.photographs;
     Result<Finish> finish = Finish::make(photographs, context_.threads);
     if (!finish) return std::move(finish).error();
     const PixelPitch pitch_mm = pitch_in_the_middle(photographs);
@@ -271,7 +271,7 @@ class Run {
     seconds_.prepare = watch_.lap();
 
     Made made(facts_.size);
-    const Result<pipeline::FrameFacts> frame = solve_bands_into(*files, *finish, photographs, made);
+    const Result<FrameFacts> frame = solve_bands_into(*files, *finish, photographs, made);
     if (!frame) return frame.error();
     take_facts(*frame, made);
     if (Result<void> ok = judge(prepared, *frame, made); !ok) return std::move(ok).error();
@@ -290,17 +290,17 @@ class Run {
   }
 
   // Band by band.
-  Result<pipeline::FrameFacts> solve_bands_into(MapFiles& files, Finish& finish,
-                                                const pipeline::Photographs& photographs, Made& made) {
+  Result<FrameFacts> solve_bands_into(MapFiles& files, Finish& finish, const Photographs& photographs,
+                                      Made& made) {
     StatusTally tally;
-    const auto keep = [&](const pipeline::MapBand& solved) -> Result<void> {
+    const auto keep = [&](const MapBand& solved) -> Result<void> {
       const FinishedBand band = finish.of(solved);
       tally.add(band.maps.status);
-      made.maps.add(band.maps, band.sigma[pipeline::kSumOfAngle], band.calibration_deg);
+      made.maps.add(band.maps, band.sigma[kSumOfAngle], band.calibration_deg);
       if (options_.previews) made.pictures.add(band.maps);
       return files.write(band.maps, band.sigma);
     };
-    Result<pipeline::FrameFacts> frame = solve_frame(photographs, method_, options_.tile, context_, keep);
+    Result<FrameFacts> frame = solve_frame(photographs, method_, options_.tile, context_, keep);
     if (!frame) return frame;
     seconds_.work = frame->work;
     seconds_.solve = watch_.lap() - frame->waited_seconds;
@@ -310,7 +310,7 @@ class Run {
     return frame;
   }
 
-  void take_facts(const pipeline::FrameFacts& frame, Made& made) {
+  void take_facts(const FrameFacts& frame, Made& made) {
     facts_.solved_by = facts_of(frame.tally);
     facts_.solved_by->robust_share = frame.robust_share;
     if (frame.deblur) facts_.sharpening = facts_of(*frame.deblur);
@@ -326,18 +326,18 @@ class Run {
   }
 
   // What the photographs say of the rig and of themselves.
-  Result<void> judge(const Prepared& prepared, const pipeline::FrameFacts& frame, Made& made) {
+  Result<void> judge(const Prepared& prepared, const FrameFacts& frame, Made& made) {
     std::vector<std::string> warnings = prepared.warnings;
     if (frame.reference) std::ranges::move(warnings_of(*frame.reference), std::back_inserter(warnings));
     PhotographsSummary& summary = made.summary;
     summary = summarize_photographs(prepared.photographs, prepared.numbers, warnings, context_);
     summary.session = plan_.session_name;
-    summary.left_out = library::left_out(plan_.session);
+    summary.left_out = left_out(plan_.session);
     for (const Shot& shot : plan_.lit) summary.shot_of_led[shot.led] = shot.index;
     summary.shifts = prepared.shifts;
     // Where shots could not be registered and readings do not fit, the cloth may have moved by far.
     if (may_have_moved_far(summary)) {
-      Result<pipeline::MovedShots> far = find_far_shifts(prepared.photographs, context_);
+      Result<MovedShots> far = find_far_shifts(prepared.photographs, context_);
       if (!far) return std::move(far).error();
       summary.far_shifts = std::move(*far);
     }
@@ -347,7 +347,7 @@ class Run {
     return {};
   }
 
-  Result<void> write_condition(const pipeline::Photographs& photographs) {
+  Result<void> write_condition(const Photographs& photographs) {
     if (!options_.condition) return {};
     Result<void> written = write_condition_map(photographs, facts_.method, partial_.path() / "condition.exr",
                                                options_.compression, context_);
@@ -377,7 +377,7 @@ class Run {
   }
 
   // Everything to be warned of, the exposure first.
-  std::vector<Verdict> verdicts(const Made& made, const pipeline::Fullness& fullness) const {
+  std::vector<Verdict> verdicts(const Made& made, const Fullness& fullness) const {
     // What leaves no shadow out takes much for a highlight.
     const bool tells_highlights = method_.level && !is_half();
     const auto pixels = static_cast<double>(facts_.size.pixels());
@@ -393,7 +393,7 @@ class Run {
   }
 
   // What people look at, and solve.json.
-  Result<void> describe(const Made& made, const pipeline::Fullness& fullness) {
+  Result<void> describe(const Made& made, const Fullness& fullness) {
     if (options_.previews) {
       if (Result<void> drawn = draw(made.pictures); !drawn) return drawn;
     }
@@ -446,7 +446,7 @@ void end_waiting(const Product& product, Json document) {
 
 Result<SolveReport> solve(const solver::MethodName& method, const SolvePlan& plan,
                           const SolveOptions& options, const JobContext& context,
-                          std::optional<pipeline::Photographs> loaded = {}) {
+                          std::optional<Photographs> loaded = {}) {
   const Product product =
       product_of(kSolveProduct, inputs_of(plan.input, options), plan.solves, options.output);
   Result<std::optional<Json>> finished = find_finished(product);
@@ -494,7 +494,7 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   return report;
 }
 
-Result<SolveReport> solve_loaded(pipeline::Photographs photographs, const SolveOptions& options,
+Result<SolveReport> solve_loaded(Photographs photographs, const SolveOptions& options,
                                  const JobContext& context) {
   const Result<solver::MethodName> method = method_named(options.method);
   if (!method) return method.error();
@@ -503,4 +503,4 @@ Result<SolveReport> solve_loaded(pipeline::Photographs photographs, const SolveO
   return solve(*method, plan, options, context, std::move(photographs));
 }
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -17,13 +17,13 @@
 #include "solve/levels/work.h"
 #include "solve/report/solve_report.h"
 
-namespace weft::app {
+namespace weft::solve {
 
 struct SolveOptions {
   std::string method = "standard";  ///< a name of solver::method_names()
   std::filesystem::path output;     ///< empty: <session>/solve/<id>, or ./<photographs>-solve/<id>
   Compression compression = Compression::kNone;  ///< of EXR files
-  TileOptions tile = pipeline::kSolveTile;
+  TileOptions tile = kSolveTile;
   bool previews = true;
   bool deblur = true;        ///< undoes the spread of the lens where the calibration knows it
   bool registration = true;  ///< finds how the cloth lay in each shot
@@ -40,7 +40,7 @@ struct SolveOptions {
 
 struct SolveSeconds {
   double read = 0, prepare = 0, solve = 0, write = 0, pictures = 0, report = 0, sync = 0, total = 0;
-  pipeline::SolveWork work;  ///< `solve` by what it grows with
+  SolveWork work;  ///< `solve` by what it grows with
 };
 
 /// What a solve left behind.
@@ -67,7 +67,7 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
 
 /// The same from photographs that are in memory, their shots registered: what solving them costs, for a price
 /// (solve/run/explain.h). `options.output` is not empty.
-Result<SolveReport> solve_loaded(pipeline::Photographs photographs, const SolveOptions& options,
+Result<SolveReport> solve_loaded(Photographs photographs, const SolveOptions& options,
                                  const JobContext& context);
 
-}  // namespace weft::app
+}  // namespace weft::solve

@@ -13,7 +13,7 @@
 #include "core/solve/solve.h"
 #include "solve/session/left_out_shots.h"
 
-namespace weft::library {
+namespace weft::solve {
 namespace {
 
 namespace fs = std::filesystem;
@@ -285,4 +285,4 @@ SourceFacts source_of(const ChoosableSolve& solve, std::vector<std::string> stal
   return {solve.id, solve.level, solve.is_preview(), std::move(stale)};
 }
 
-}  // namespace weft::library
+}  // namespace weft::solve

@@ -14,7 +14,7 @@
 
 // Which solve of a session others are made from, and what speaks against one.
 
-namespace weft::library {
+namespace weft::solve {
 
 /// The levels of a solve, the least first. A method of comparison stands between the first two.
 inline constexpr std::array<std::string_view, 5> kLevels = {"preview", "fast", "standard", "robust",
@@ -73,4 +73,4 @@ struct SourceFacts {
 };
 SourceFacts source_of(const ChoosableSolve& solve, std::vector<std::string> stale);
 
-}  // namespace weft::library
+}  // namespace weft::solve

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/session/left_out_shots.h"
 
-namespace weft::library {
+namespace weft::solve {
 
 std::vector<int> left_out(const Session& session) {
   std::vector<int> shots;
@@ -13,4 +13,4 @@ std::vector<int> left_out(const Session& session) {
   return shots;
 }
 
-}  // namespace weft::library
+}  // namespace weft::solve

@@ -5,7 +5,7 @@
 
 #include "core/rig/session.h"
 
-namespace weft::library {
+namespace weft::solve {
 
 /// So many shots of a session a person may leave out.
 inline constexpr std::size_t kMostLeftOut = 64;
@@ -14,4 +14,4 @@ inline constexpr std::size_t kMostLeftOut = 64;
 /// change_metadata() sets. Entries that are no index are passed over.
 std::vector<int> left_out(const Session& session);
 
-}  // namespace weft::library
+}  // namespace weft::solve

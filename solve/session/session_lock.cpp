@@ -8,7 +8,7 @@
 
 #include "core/base/files.h"
 
-namespace weft::library {
+namespace weft::solve {
 
 Result<Descriptor> lock_session(const std::filesystem::path& folder) {
   Descriptor lock(folder, O_RDONLY | O_DIRECTORY);
@@ -18,4 +18,4 @@ Result<Descriptor> lock_session(const std::filesystem::path& folder) {
                "a scan or another edit holds its lock", "wait until it has ended"};
 }
 
-}  // namespace weft::library
+}  // namespace weft::solve

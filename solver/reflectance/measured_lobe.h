@@ -62,7 +62,7 @@ struct MeasuredLobe {
   std::vector<LobePoint> points;        ///< at most kMostLobePoints, where they tell more than noise
   double weft_share = 0;                ///< pixels whose yarn lies across the axis
   double median_albedo = 0;             ///< of the pixels, as `lobe` leaves it
-  std::vector<LobePart> parts;          ///< of a frame of one material (pipeline::measure_gloss)
+  std::vector<LobePart> parts;          ///< of a frame of one material (solve::measure_gloss)
   std::array<double, 2> half_deg = {};  ///< angles of normals to half-vectors: 2nd and 98th percentile
   std::optional<LobeTint> tint;         ///< where `lobe` has one (solver/reflectance/lobe_tint.h)
 

@@ -109,8 +109,8 @@ class RigDay : public testing::Test {
                          "' --quality standard --quiet --calibration $by -o solved_$(basename $by); done"),
         0)
         << read_text(in_folder("solve.txt")).value();
-    const auto off = compare_normals(in_folder("solved_" + calibration + "/normal.exr"),
-                                     in_folder("solved_exact" + number + "/normal.exr"), {});
+    const auto off = material::compare_normals(in_folder("solved_" + calibration + "/normal.exr"),
+                                               in_folder("solved_exact" + number + "/normal.exr"), {});
     ASSERT_TRUE(off) << off.error().message();
     EXPECT_LT(off->median_deg, 0.1);
     EXPECT_LT(off->p95_deg, 0.2);

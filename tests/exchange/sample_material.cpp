@@ -170,17 +170,17 @@ TexturedMaterial constant_material() {
   material.repeats = true;
   material.base_color.constant = {0.4, 0.2, 0.1};
   material.base_color.source = "measured";
-  material.normal = Parameter{{}, {0, 0, 1}, "measured"};
-  material.height_mm = Parameter{{}, {0, 0, 0}, "derived"};
-  material.roughness = Parameter{{}, {0.55, 0, 0}, "assumed"};
-  material.occlusion = Parameter{{}, {0.85, 0, 0}, "derived"};
-  material.opacity = Parameter{{}, {1, 0, 0}, "measured"};
-  material.f0 = Parameter{{}, {0.04, 0, 0}, "assumed"};
-  material.metallic = Parameter{{}, {0, 0, 0}, "assumed"};
-  material.anisotropy = Parameter{{}, {0.5, 0, 0}, "derived"};
-  material.anisotropy_direction = Parameter{{}, {0.6, 0.8, 0}, "derived"};
-  material.sheen_color = Parameter{{}, {0.15, 0.15, 0.15}, "assumed"};
-  material.sheen_roughness = Parameter{{}, {0.5, 0, 0}, "assumed"};
+  material.normal = TexturedParameter{{}, {0, 0, 1}, "measured"};
+  material.height_mm = TexturedParameter{{}, {0, 0, 0}, "derived"};
+  material.roughness = TexturedParameter{{}, {0.55, 0, 0}, "assumed"};
+  material.occlusion = TexturedParameter{{}, {0.85, 0, 0}, "derived"};
+  material.opacity = TexturedParameter{{}, {1, 0, 0}, "measured"};
+  material.f0 = TexturedParameter{{}, {0.04, 0, 0}, "assumed"};
+  material.metallic = TexturedParameter{{}, {0, 0, 0}, "assumed"};
+  material.anisotropy = TexturedParameter{{}, {0.5, 0, 0}, "derived"};
+  material.anisotropy_direction = TexturedParameter{{}, {0.6, 0.8, 0}, "derived"};
+  material.sheen_color = TexturedParameter{{}, {0.15, 0.15, 0.15}, "assumed"};
+  material.sheen_roughness = TexturedParameter{{}, {0.5, 0, 0}, "assumed"};
   material.provenance = {{"session", "indigo.weft"}, {"source.roughness", "assumed"}};
   return material;
 }

@@ -21,7 +21,7 @@ auto are(const std::vector<double>& values) {
 
 TEST(PlotAxis, PutsItsEndsWhereItIsToldAndTheMiddleBetween) {
   const PlotAxis linear = {.low = 2, .high = 6, .from = 100, .to = 20},
-             log = {.low = 0.1, .high = 1000, .from = 0, .to = 400, .log = true};
+                 log = {.low = 0.1, .high = 1000, .from = 0, .to = 400, .log = true};
   EXPECT_DOUBLE_EQ(linear.at(2), 100);
   EXPECT_DOUBLE_EQ(linear.at(6), 20);
   EXPECT_DOUBLE_EQ(linear.at(3), 80);

@@ -138,16 +138,15 @@ TEST(Docs, TheReadmeHasEveryLevelInItsOrder) {
 /// The first level whose list has the stage.
 std::string least_level_with(const std::string& stage) {
   for (const solver::MethodName& each : solver::method_names()) {
-    const std::vector<pipeline::Stage> stages = pipeline::stages_of(each);
-    if (each.level && std::ranges::find(stages, stage, &pipeline::Stage::name) != stages.end())
-      return each.name;
+    const std::vector<solve::Stage> stages = solve::stages_of(each);
+    if (each.level && std::ranges::find(stages, stage, &solve::Stage::name) != stages.end()) return each.name;
   }
   return "";
 }
 
 TEST(Docs, ThePageOnAccuracyHasTheStagesOfTheLevelsInTheirOrder) {
   std::string table = "| stage | from | what it does |\n|---|---|---|\n";
-  const std::vector<pipeline::Stage> all = pipeline::stages_of(solver::method_of(solver::Level::kReference));
+  const std::vector<solve::Stage> all = solve::stages_of(solver::method_of(solver::Level::kReference));
   for (auto stage = all.begin() + 1; stage != all.end(); ++stage)
     table += "| `" + stage->name + "` | `" + least_level_with(stage->name) + "` | " + stage->does + " |\n";
   const auto each = pages();

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 Photographs unlit(Size size, const DistantLights& lights) {
@@ -116,4 +116,4 @@ Result<void> WholeMaps::operator()(const MapBand& band) {
   return {};
 }
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -13,7 +13,7 @@
 
 // Cloths in closed form, photographed without noise.
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 struct Cloth {
   std::function<Vec3(int x, int y)> normal = [](int, int) { return Vec3{0, 0, 1}; };
@@ -51,4 +51,4 @@ struct WholeMaps {
   int rows = 0, albedo_rows = 0;  ///< that have come, in order
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -9,14 +9,14 @@
 #include <numeric>
 #include <vector>
 
+#include "solve/conditions/bad_photosites.h"
 #include "solve/conditions/brackets.h"
 #include "solve/conditions/conditions.h"
 #include "solve/conditions/drift.h"
-#include "solve/conditions/bad_photosites.h"
 #include "solve/conditions/useless_lights.h"
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 using testing::ElementsAre;
@@ -231,8 +231,8 @@ TEST(Drift, IsAskedOfRepeatsWhereNoPatchCanBeRead) {
 }
 
 // All lights of the photographs, lit once each.
-SolvePlan plan_of(const Photographs& photographs) {
-  SolvePlan plan;
+solve::SolvePlan plan_of(const Photographs& photographs) {
+  solve::SolvePlan plan;
   for (std::size_t k = 0; k < photographs.count(); ++k) {
     Shot shot;
     shot.index = static_cast<int>(k);
@@ -247,7 +247,7 @@ TEST(Conditions, ArePutRightAndToldInThePhotographs) {
   photographs.mosaics()->frames[2] = frame_of(kShotSize, [](int, int) { return 1.0; });
   brighten(photographs, 8, 0.005);
   shade(photographs, 7, 0.4);
-  SolvePlan plan = plan_of(photographs);
+  solve::SolvePlan plan = plan_of(photographs);
   plan.calibration.patches = four_patches();
   FramesBeside beside;
   beside.repeats = photographs.mosaics()->alike({});
@@ -284,7 +284,7 @@ TEST(Conditions, OfPhotographsWithoutARigLeaveNoLightOut) {
       std::fill_n(plane.row(y), kShotSize.width, std::numeric_limits<float>::infinity());
   }
   ASSERT_EQ(find_useless_lights(photographs).size(), 1U);
-  SolvePlan plan = plan_of(photographs);
+  solve::SolvePlan plan = plan_of(photographs);
   plan.is_of_rig = false;
   FramesBeside beside;
   const JobContext context = {.threads = 1};
@@ -295,4 +295,4 @@ TEST(Conditions, OfPhotographsWithoutARigLeaveNoLightOut) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -12,7 +12,7 @@
 #include "core/base/vec.h"
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr Size kGainsFrame = {256, 192};
@@ -97,4 +97,4 @@ TEST(LedGains, OfALedThatIsFaultyAreLeftToThoseWhoNameIt) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

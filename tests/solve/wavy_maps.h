@@ -10,7 +10,7 @@
 #include "core/image/image.h"
 #include "solve/bands/bands.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 
 /// Maps of a wavy grey cloth: normal, albedo, sigma of the albedo, sigma of the normal, residual.
 struct WavyMaps {
@@ -61,4 +61,4 @@ struct WavyMaps {
   }
 };
 
-}  // namespace weft::pipeline
+}  // namespace weft::solve

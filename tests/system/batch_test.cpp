@@ -346,7 +346,7 @@ TEST_F(BatchTest, SaysWhatChangedAndMovesTheCurrentSolveWhenAsked) {
     return Json::parse(bytes_of(session(i) / "session.json")).value("current_solve", Json());
   };
   EXPECT_TRUE(current(0).is_null()) << "nothing is replaced by itself";
-  const auto used = [&](int i) { return library::current_solve(*read_session(session(i))); };
+  const auto used = [&](int i) { return solve::current_solve(*read_session(session(i))); };
   EXPECT_EQ(used(0), old) << "it waits until it is accepted, though it is of a higher level";
   ASSERT_EQ(run_weft({"solve", session(1).string(), "-q"}).exit_code, 0);
   EXPECT_EQ(used(1), document["sessions"][1]["solve"]) << "or until a person asks for it";

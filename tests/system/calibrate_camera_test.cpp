@@ -25,8 +25,8 @@ namespace weft::test {
 namespace {
 
 namespace fs = std::filesystem;
-using app::calibrate_camera;
-using app::CalibrateCameraOptions;
+using calibration::calibrate_camera;
+using calibration::CalibrateCameraOptions;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -124,14 +124,15 @@ void expect_true_ruler(const Workspace& work, const fs::path& measured) {
   ruler.targets[0].pattern = simulator::CheckerboardSettings{14, 9, 12, 4};
   ruler.targets[0].centre_mm = {0, 0, 0.001};
   ASSERT_TRUE(simulator::simulate_session(ruler, work / "ruler.weft", {}));
-  app::SolveOptions solve;
+  solve::SolveOptions solve;
   solve.method = "fast";
   solve.previews = false;
-  ASSERT_TRUE(app::solve_session({.folder = work / "ruler.weft", .calibration = {}, .leds = {}}, solve, {}));
-  app::RectifyOptions rectify;
+  ASSERT_TRUE(
+      solve::solve_session({.folder = work / "ruler.weft", .calibration = {}, .leds = {}}, solve, {}));
+  material::RectifyOptions rectify;
   rectify.session = work / "ruler.weft";
   rectify.calibration = measured;
-  const auto maps = app::rectify_session(rectify, {});
+  const auto maps = material::rectify_session(rectify, {});
   ASSERT_TRUE(maps) << maps.error().message();
   const Result<LoadedImage> albedo = read_image(maps->folder / "albedo.exr");
   ASSERT_TRUE(albedo);

@@ -75,8 +75,8 @@ struct Photograph {
   }
 };
 
-CalibrateColorOptions options_of(const Workspace& work) {
-  CalibrateColorOptions options;
+calibration::CalibrateColorOptions options_of(const Workspace& work) {
+  calibration::CalibrateColorOptions options;
   options.input = work / "color";
   options.output = work / "new";
   options.rig = "rig A";
@@ -84,9 +84,9 @@ CalibrateColorOptions options_of(const Workspace& work) {
   return options;
 }
 
-std::string refusal(const Workspace& work, const CalibrateColorOptions& options) {
+std::string refusal(const Workspace& work, const calibration::CalibrateColorOptions& options) {
   const auto before = contents_of(work.path());
-  const auto outcome = calibrate_color(options, {});
+  const auto outcome = calibration::calibrate_color(options, {});
   EXPECT_EQ(contents_of(work.path()), before) << "nothing is written";
   return outcome ? "accepted" : outcome.error().message();
 }
@@ -102,7 +102,7 @@ TEST(CalibrateColor, FitsAPhotographUnderALampToOneSide) {
   const Workspace work;
   fs::create_directories(work / "color");
   Photograph().write(work / "color" / "chart.tif");
-  const auto outcome = calibrate_color(options_of(work), {});
+  const auto outcome = calibration::calibrate_color(options_of(work), {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   EXPECT_THAT(outcome->report.verdicts, IsEmpty());
   EXPECT_LT(outcome->report.numbers["mean_held_out"].get<double>(), 0.5);
@@ -123,9 +123,9 @@ TEST(CalibrateColor, WritesTheCurveWhereItIsAskedFor) {
   const Workspace work;
   fs::create_directories(work / "color");
   Photograph().write(work / "color" / "chart.tif");
-  CalibrateColorOptions options = options_of(work);
+  calibration::CalibrateColorOptions options = options_of(work);
   options.curve = true;
-  const auto outcome = calibrate_color(options, {});
+  const auto outcome = calibration::calibrate_color(options, {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   EXPECT_TRUE(read_calibration(work / "new")->color->curve);
   EXPECT_LT(outcome->report.numbers["mean_by_curve"].get<double>(), 3);
@@ -146,9 +146,9 @@ TEST(CalibrateColor, ReadsAChartThatWasFoundUpsideDown) {
   Photograph photograph;
   photograph.upside_down = true;
   photograph.write(work / "color" / "chart.tif");
-  CalibrateColorOptions options = options_of(work);
+  calibration::CalibrateColorOptions options = options_of(work);
   options.corners_px.clear();
-  const auto outcome = calibrate_color(options, {});
+  const auto outcome = calibration::calibrate_color(options, {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   ASSERT_THAT(outcome->warnings, SizeIs(1));
   EXPECT_THAT(outcome->warnings[0], HasSubstr("upside down"));
@@ -170,7 +170,7 @@ TEST(CalibrateColor, LeavesFullPatchesOutAndRefusesTooMany) {
   Photograph photograph;
   photograph.exposure = 1.15;
   photograph.write(work / "color" / "chart.tif");
-  const auto outcome = calibrate_color(options_of(work), {});
+  const auto outcome = calibration::calibrate_color(options_of(work), {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   ASSERT_THAT(outcome->report.verdicts, SizeIs(1));
   EXPECT_THAT(outcome->report.verdicts[0].text, HasSubstr("patches 19 (white) are full"));
@@ -187,7 +187,7 @@ TEST(CalibrateColor, WarnsOfLightThatFallsOffAndOfAChartThatIsDark) {
   photograph.slope = 0.8;
   photograph.exposure = 0.02;
   photograph.write(work / "color" / "chart.tif");
-  const auto outcome = calibrate_color(options_of(work), {});
+  const auto outcome = calibration::calibrate_color(options_of(work), {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   std::vector<std::string> names;
   for (const Verdict& v : outcome->report.verdicts) names.push_back(v.name);
@@ -199,7 +199,7 @@ TEST(CalibrateColor, RefusesWhatIsNoChartAndNoPicture) {
   EXPECT_THAT(refusal(work, options_of(work)), HasSubstr("no picture of a chart"));
   fs::create_directories(work / "color");
   Photograph().write(work / "color" / "chart.tif");
-  CalibrateColorOptions options = options_of(work);
+  calibration::CalibrateColorOptions options = options_of(work);
   for (std::size_t i = 0; i < 8; i += 2) options.corners_px[i] = options.corners_px[i] / 4 + 150;
   EXPECT_THAT(refusal(work, options), HasSubstr("not the chart"));
   ASSERT_TRUE(write_file(work / "color" / "chart.toml", "srgb = [[1, 2, 3]]\n"));
@@ -216,7 +216,7 @@ TEST(CalibrateColor, TakesTheEditionOfTheChartThatIsNamed) {
   fs::create_directories(work / "color");
   Photograph().write(work / "color" / "chart.tif");
   ASSERT_TRUE(write_file(work / "color" / "chart.toml", "edition = \"before 2014\"\n"));
-  const auto outcome = calibrate_color(options_of(work), {});
+  const auto outcome = calibration::calibrate_color(options_of(work), {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   EXPECT_THAT(outcome->report.numbers["reference"].get<std::string>(), HasSubstr("before November 2014"));
   EXPECT_GT(outcome->report.numbers["mean_after"].get<double>(), 0.5) << "the photograph is of a newer one";
@@ -241,15 +241,16 @@ void simulate_chart(const fs::path& folder) {
   ASSERT_TRUE(write_file(folder / "chart.toml", toml + "]\n"));
 }
 
-Result<SolveReport> solve(const fs::path& session, const fs::path& calibration, const fs::path& output) {
-  SessionOptions input;
+Result<solve::SolveReport> solve(const fs::path& session, const fs::path& calibration,
+                                 const fs::path& output) {
+  solve::SessionOptions input;
   input.folder = session;
   input.calibration = calibration;
-  SolveOptions options;
+  solve::SolveOptions options;
   options.method = "fast";
   options.output = output;
   options.previews = false;
-  return solve_session(input, options, {});
+  return solve::solve_session(input, options, {});
 }
 
 Rgb at(const LoadedImage& image, int x, int y) {
@@ -282,10 +283,10 @@ TEST(CalibrateColor, MakesSolvedAlbedoRec709) {
   fs::create_directories(work / "color");
   simulate_chart(work / "color");
   const fs::path session = work / "color" / "chart.weft";
-  CalibrateColorOptions options = options_of(work);
+  calibration::CalibrateColorOptions options = options_of(work);
   options.from = session / "calibration";
   options.corners_px.clear();
-  const auto outcome = calibrate_color(options, {});
+  const auto outcome = calibration::calibrate_color(options, {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   EXPECT_LT(outcome->report.numbers["mean_held_out"].get<double>(), 1.5);
   EXPECT_NEAR(outcome->report.numbers["chart_over_albedo"].get<double>(), 1, 0.03);
@@ -342,10 +343,10 @@ TEST(CalibrateColor, TakesWhiteAndScaleFromTheChartWhereNobodyMeasuredThem) {
   }
   tinted.patches = {{{{10, 10}, {30, 10}, {30, 30}}, {0.8, 0.8, 0.8}}};
   ASSERT_TRUE(write_calibration(work / "tinted", tinted));
-  CalibrateColorOptions options = options_of(work);
+  calibration::CalibrateColorOptions options = options_of(work);
   options.from = work / "tinted";
   options.corners_px.clear();
-  const auto outcome = calibrate_color(options, {});
+  const auto outcome = calibration::calibrate_color(options, {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   const Calibration& now = outcome->calibration;
   EXPECT_EQ(now.subject.albedo_scale, AlbedoScale::kAbsolute);
@@ -361,7 +362,7 @@ TEST(CalibrateColor, TakesWhiteAndScaleFromTheChartWhereNobodyMeasuredThem) {
 
   options.from = session / "calibration";
   options.output = work / "absolute";
-  const auto absolute = calibrate_color(options, {});
+  const auto absolute = calibration::calibrate_color(options, {});
   ASSERT_TRUE(absolute) << absolute.error().message();
   EXPECT_NEAR(std::get<NearLights>(*absolute->calibration.lights).leds[1].flux_rgb[1], truth[1],
               1e-6 * truth[1])

@@ -86,8 +86,8 @@ class CalibrateGrey : public testing::Test {
     before.light_covariance = ParameterCovariance{{"led01.position_mm.x", "led01.log_flux"}, {1, 0, 0, 1e-6}};
     ASSERT_TRUE(write_calibration(work_ / "before", before));
   }
-  Result<CalibrateOutcome> calibrate() const {
-    return calibrate_grey(
+  Result<calibration::CalibrateOutcome> calibrate() const {
+    return calibration::calibrate_grey(
         {.session = work_ / "grey.weft", .from = work_ / "before", .output = work_ / "after"}, {});
   }
   std::string refusal() const {

@@ -141,19 +141,19 @@ class CalibrateLights : public testing::Test {
     fs::remove_all(folder);
     render(kFive[static_cast<std::size_t>(capture - 1)], folder, 90 + capture, change);
   }
-  CalibrateOutcome done() {
-    Result<CalibrateOutcome> outcome = calibrate_lights(options_, {});
+  calibration::CalibrateOutcome done() {
+    Result<calibration::CalibrateOutcome> outcome = calibration::calibrate_lights(options_, {});
     EXPECT_TRUE(outcome) << outcome.error().message();
-    return outcome ? std::move(*outcome) : CalibrateOutcome();
+    return outcome ? std::move(*outcome) : calibration::CalibrateOutcome();
   }
   std::string refusal() {
-    const Result<CalibrateOutcome> outcome = calibrate_lights(options_, {});
+    const Result<calibration::CalibrateOutcome> outcome = calibration::calibrate_lights(options_, {});
     EXPECT_FALSE(outcome) << "it was accepted";
     EXPECT_FALSE(fs::exists(options_.output)) << "nothing may be written";
     return outcome ? std::string() : outcome.error().message();
   }
   /// The verdict that says this; one without a name where none does.
-  static Verdict verdict_of(const CalibrateOutcome& outcome, const std::string& part) {
+  static Verdict verdict_of(const calibration::CalibrateOutcome& outcome, const std::string& part) {
     const std::vector<Verdict>& all = outcome.report.verdicts;
     const auto found = std::find_if(all.begin(), all.end(),
                                     [&](const Verdict& v) { return v.text.find(part) != v.text.npos; });
@@ -161,11 +161,11 @@ class CalibrateLights : public testing::Test {
   }
 
   fs::path work_;
-  CalibrateLightsOptions options_;
+  calibration::CalibrateLightsOptions options_;
 };
 
 TEST_F(CalibrateLights, FindsTheRigFromFiveSessionsOfASheet) {
-  const CalibrateOutcome outcome = done();
+  const calibration::CalibrateOutcome outcome = done();
   const Result<Calibration> written = read_calibration(options_.output);
   ASSERT_TRUE(written) << written.error().message();
   const NearLights found = std::get<NearLights>(*written->lights);
@@ -187,8 +187,8 @@ TEST_F(CalibrateLights, FindsTheRigFromFiveSessionsOfASheet) {
 }
 
 TEST_F(CalibrateLights, ByThePixelWritesMapsOfEveryLed) {
-  options_.method = LightsMethod::kPerPixel;
-  const CalibrateOutcome outcome = done();
+  options_.method = calibration::LightsMethod::kPerPixel;
+  const calibration::CalibrateOutcome outcome = done();
   const auto map = read_image(options_.output / "report" / "led06_direction.exr");
   ASSERT_TRUE(map) << map.error().message();
   EXPECT_EQ(map->info.size.width, 26);
@@ -200,8 +200,8 @@ TEST_F(CalibrateLights, ByThePixelWritesMapsOfEveryLed) {
 }
 
 TEST_F(CalibrateLights, AsTheSeedDoesSaysWhatItCannotDo) {
-  options_.method = LightsMethod::kSeed;
-  const CalibrateOutcome outcome = done();
+  options_.method = calibration::LightsMethod::kSeed;
+  const calibration::CalibrateOutcome outcome = done();
   EXPECT_EQ(verdict_of(outcome, "finds no directions").name, "NO_DIRECTIONS");
   const Json& steps = outcome.report.numbers["seed"];
   ASSERT_EQ(steps.size(), 6u);
@@ -216,12 +216,12 @@ TEST_F(CalibrateLights, LeavesOutPatchesThatTheOldLightsMeasured) {
   patched.patches = {{{{10, 10}, {30, 10}, {30, 30}}, {0.5, 0.5, 0.5}}};
   ASSERT_TRUE(write_calibration(work_ / "patched", patched));
   options_.from = work_ / "patched";
-  options_.method = LightsMethod::kSeed;
-  const CalibrateOutcome outcome = done();
+  options_.method = calibration::LightsMethod::kSeed;
+  const calibration::CalibrateOutcome outcome = done();
   EXPECT_THAT(outcome.warnings, testing::Contains(HasSubstr("weft calibrate patches")));
   EXPECT_TRUE(outcome.calibration.patches.empty());
   options_.input = "nothing";
-  const auto again = calibrate_lights(options_, {});
+  const auto again = calibration::calibrate_lights(options_, {});
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().kind, ErrorKind::kCannotCreate) << "the output is looked at first";
 }
@@ -237,15 +237,15 @@ TEST_F(CalibrateLights, TakesARigFileThatSaysNothingOfPositionsForNone) {
 
 TEST(MergedBlocks, ReachAllEdgesOfTheFrame) {
   const Size size = {4928, 3264};
-  SheetCaptures all;
-  SheetCapture& capture = all.captures.emplace_back();
+  calibration::SheetCaptures all;
+  calibration::SheetCapture& capture = all.captures.emplace_back();
   calibration::SheetBlockGrid& grid = capture.leds.emplace_back(size, all.block_px);
   for (calibration::BlockMean& block : grid.blocks) block.reading = 1;
   all.columns = grid.columns;
   all.rows = grid.rows;
   const auto blocks = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
   capture.is_paper.assign(blocks, 1);
-  const auto readings = merged_blocks(all, {std::vector<char>(blocks)}, {size, 26, 17});
+  const auto readings = calibration::merged_blocks(all, {std::vector<char>(blocks)}, {size, 26, 17});
   ASSERT_EQ(readings.size(), 26U * 17U);
   EXPECT_LT(readings.front().x_px, 100);
   EXPECT_GT(readings.back().x_px, 4928 - 100) << "of 4928 pixels";
@@ -254,7 +254,7 @@ TEST(MergedBlocks, ReachAllEdgesOfTheFrame) {
 
 TEST_F(CalibrateLights, FromOneFlatSheetIsWeakAndSaysSo) {
   for (int i = 2; i <= 5; ++i) fs::remove_all(options_.input / fmt::format("sheet{}.weft", i));
-  const CalibrateOutcome outcome = done();
+  const calibration::CalibrateOutcome outcome = done();
   EXPECT_THAT(verdict_of(outcome, "weakly known, from 1 pose").remedy, HasSubstr("tilted"));
   EXPECT_GT(outcome.report.numbers["worst_position_sigma_mm"].get<double>(), 4);
 }
@@ -267,7 +267,7 @@ TEST_F(CalibrateLights, AreNotAcceptedOnASessionThatTheyWereFittedTo) {
   done();
   render({0, 0, 180}, work_ / "turned.weft", 50);
   const auto verdicts = [&](const fs::path& session) {
-    const auto checked = calibrate_check(
+    const auto checked = calibration::calibrate_check(
         {.input = session, .from = options_.output, .sheet = options_.input / "sheet.toml"}, {});
     EXPECT_TRUE(checked) << checked.error().message();
     std::vector<std::string> names;
@@ -281,7 +281,7 @@ TEST_F(CalibrateLights, AreNotAcceptedOnASessionThatTheyWereFittedTo) {
 }
 
 TEST_F(CalibrateLights, SayWhereTheGateIsLaxAndHowToMakeItStrict) {
-  const CalibrateOutcome lax = done();
+  const calibration::CalibrateOutcome lax = done();
   const double chi_square = lax.report.numbers["chi_square"].get<double>();
   ASSERT_LT(chi_square, 0.5) << "the simulated sheet is flatter than 0.05 degrees";
   ASSERT_THAT(lax.warnings, testing::Contains(HasSubstr("--flatness below 0.05")));
@@ -290,7 +290,7 @@ TEST_F(CalibrateLights, SayWhereTheGateIsLaxAndHowToMakeItStrict) {
   EXPECT_EQ(verdict_of(lax, "lax").name, "") << "it is a remark";
   options_.output = work_ / "strict";
   options_.flatness_deg = 0.01;
-  const CalibrateOutcome strict = done();
+  const calibration::CalibrateOutcome strict = done();
   EXPECT_GT(strict.report.numbers["chi_square"].get<double>(), 1.2 * chi_square);
 }
 
@@ -309,7 +309,7 @@ TEST_F(CalibrateLights, NamesTwoCapturesOfOnePose) {
   const fs::path twin = options_.input / "sheet5.weft";
   fs::remove_all(twin);
   render(kFive[3], twin, 77);
-  const CalibrateOutcome outcome = done();
+  const calibration::CalibrateOutcome outcome = done();
   EXPECT_THAT(verdict_of(outcome, "sheet4.weft and sheet5.weft show the sheet in one pose").remedy,
               HasSubstr("turn the sheet"));
   for (const Verdict& verdict : outcome.report.verdicts) {
@@ -327,7 +327,7 @@ TEST_F(CalibrateLights, LeavesOutAStainAndNamesItsPlace) {
       stain.centre_mm = on_sheet(kFive[static_cast<std::size_t>(i - 1)], 20, -15, 0.01);
     });
   }
-  const CalibrateOutcome outcome = done();
+  const calibration::CalibrateOutcome outcome = done();
   EXPECT_EQ(verdict_of(outcome, "stain").name, "PAPER_FAULT");
   const Json& fault = outcome.report.numbers["faults"][0];
   EXPECT_NEAR(fault["u_mm"].get<double>(), 20, 2);
@@ -343,7 +343,7 @@ TEST_F(CalibrateLights, LeavesOutAFoldAndTellsItFromAStain) {
     fold.tilt_deg = 3;
     fold.centre_mm = on_sheet(kFive[0], -30, 10, 0.35);
   });
-  const CalibrateOutcome outcome = done();
+  const calibration::CalibrateOutcome outcome = done();
   EXPECT_EQ(verdict_of(outcome, "fold").name, "PAPER_FAULT");
   const Json& fault = outcome.report.numbers["faults"][0];
   EXPECT_NEAR(fault["u_mm"].get<double>(), -30, 2);
@@ -440,7 +440,7 @@ TEST_F(CalibrateLights, NamesWhatIsMissing) {
 TEST_F(CalibrateLights, NamesWhatIsWrongInItsDescriptions) {
   const auto sheet = [&](const std::string& text) {
     EXPECT_TRUE(write_file(options_.input / "sheet.toml", text));
-    const auto read = read_sheet_file(options_.input / "sheet.toml");
+    const auto read = calibration::read_sheet_file(options_.input / "sheet.toml");
     return read ? std::string("accepted") : read.error().message();
   };
   const std::string tag = "[[tag]]\nid = 1\nside_mm = 5\ncentre_mm = [1, 2]\n";

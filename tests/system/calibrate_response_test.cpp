@@ -69,13 +69,13 @@ struct Frames {
   }
 };
 
-Result<CalibrateOutcome> calibrate(const Workspace& work, const fs::path& from = {}) {
-  CalibrateResponseOptions options;
+Result<calibration::CalibrateOutcome> calibrate(const Workspace& work, const fs::path& from = {}) {
+  calibration::CalibrateResponseOptions options;
   options.input = work / "response";
   options.from = from;
   options.output = work / "new";
   options.rig = "rig A";
-  return calibrate_response(options, {});
+  return calibration::calibrate_response(options, {});
 }
 
 std::string refusal(const Workspace& work, const fs::path& from = {}) {
@@ -279,10 +279,10 @@ TEST(CalibrateResponse, LooksAtItsOutputBeforeItsFrames) {
 TEST(CalibrateResponse, TakesAnOutputWithASlashAtItsEnd) {
   const Workspace work;
   Frames().add_all(work / "response");
-  CalibrateResponseOptions options;
+  calibration::CalibrateResponseOptions options;
   options.input = work / "response/";
   options.output = work / "new/";
-  const auto outcome = calibrate_response(options, {});
+  const auto outcome = calibration::calibrate_response(options, {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   EXPECT_TRUE(is_there(work / "new" / "hot.png"));
 }
@@ -380,19 +380,19 @@ TEST(CalibrateResponse, MeasuresTheVeilOfALensInABlackTrap) {
 
   fs::create_directories(work / "set");
   fs::rename(work / "response" / "trap", work / "set" / "trap");
-  CalibrateResponseOptions beside = {work / "response", {}, work / "beside", {}};
+  calibration::CalibrateResponseOptions beside = {work / "response", {}, work / "beside", {}};
   beside.trap = work / "set";
-  const auto from_set = calibrate_response(beside, {});
+  const auto from_set = calibration::calibrate_response(beside, {});
   ASSERT_TRUE(from_set) << from_set.error().message();
   EXPECT_EQ(from_set->calibration.response->veil, veil) << "the same photographs in a set of their own";
   beside.trap = work / "response";
   beside.output = work / "nowhere";
-  const auto none = calibrate_response(beside, {});
+  const auto none = calibration::calibrate_response(beside, {});
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error().message(), HasSubstr("no photograph of a trap"));
 
-  CalibrateResponseOptions again = {work / "response", work / "new", work / "again", {}};
-  const auto kept = calibrate_response(again, {});
+  calibration::CalibrateResponseOptions again = {work / "response", work / "new", work / "again", {}};
+  const auto kept = calibration::calibrate_response(again, {});
   ASSERT_TRUE(kept) << kept.error().message();
   EXPECT_EQ(kept->calibration.response->veil, veil) << "what was not photographed again stays";
 }

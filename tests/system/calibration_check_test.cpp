@@ -80,11 +80,11 @@ class CalibrationCheck : public testing::Test {
 
   /// The exact calibration with the tags that the session shows and its patches.
   static void calibrate() {
-    const auto plan = plan_session({root_ / "cloth.weft", {}, {}});
+    const auto plan = solve::plan_session({root_ / "cloth.weft", {}, {}});
     ASSERT_TRUE(plan) << plan.error().message();
-    const auto loaded = load_photographs(*plan, {});
+    const auto loaded = solve::load_photographs(*plan, {});
     ASSERT_TRUE(loaded) << loaded.error().message();
-    const auto tags = tags_in(*loaded, {simulator::TagSettings().dictionary});
+    const auto tags = calibration::tags_in(*loaded, {simulator::TagSettings().dictionary});
     ASSERT_TRUE(tags) << tags.error().message();
     ASSERT_EQ(tags->size(), 4U);
     Calibration rig = plan->calibration;
@@ -121,11 +121,11 @@ fs::path CalibrationCheck::root_;
 
 TEST_F(CalibrationCheck, AcceptsWhatIsRight) {
   const fs::path result = root_ / "accepted";
-  const auto outcome =
-      calibrate_check({.input = root_ / "check", .from = root_ / "rig" / "first", .output = result}, {});
+  const auto outcome = calibration::calibrate_check(
+      {.input = root_ / "check", .from = root_ / "rig" / "first", .output = result}, {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   EXPECT_TRUE(outcome->report.verdicts.empty()) << outcome->report.verdicts.front().text;
-  const auto document = read_json(result / kCheckResultFile, kCheckResultSchema, 1);
+  const auto document = read_json(result / calibration::kCheckResultFile, calibration::kCheckResultSchema, 1);
   ASSERT_TRUE(document) << document.error().message();
   EXPECT_TRUE((*document)["passed"].get<bool>());
   const Json& sheets = (*document)["numbers"]["sheets"];
@@ -149,13 +149,13 @@ TEST_F(CalibrationCheck, SaysWhatItDidNotCheck) {
   Session session = *read_session(once);
   std::erase_if(session.shots, [](const Shot& shot) { return shot.role == ShotRole::kRepeat; });
   ASSERT_TRUE(write_session(session));
-  const auto flat = calibrate_check(
+  const auto flat = calibration::calibrate_check(
       {.input = once, .from = root_ / "rig" / "first", .sheet = root_ / "check" / "sheet.toml"}, {});
   ASSERT_TRUE(flat) << flat.error().message();
   EXPECT_THAT(flat->report.summary,
               testing::StartsWith("Accepted, with slopes and drift not checked: 1 sheet, flat ones within"));
-  const auto tilted =
-      calibrate_check({.input = root_ / "check" / "plane.weft", .from = root_ / "rig" / "first"}, {});
+  const auto tilted = calibration::calibrate_check(
+      {.input = root_ / "check" / "plane.weft", .from = root_ / "rig" / "first"}, {});
   ASSERT_TRUE(tilted) << tilted.error().message();
   EXPECT_THAT(tilted->report.summary, testing::StartsWith("Accepted, with flatness not checked: 1 sheet"));
   EXPECT_THAT(tilted->report.summary, testing::Not(HasSubstr("rms"))) << "no sheet was flat";
@@ -186,7 +186,7 @@ TEST_F(CalibrationCheck, PrintsItsTableAndEndsWithTheCodeOfBadDataWhereItRefuses
 }
 
 TEST_F(CalibrationCheck, RefusesTapeMeasuredLights) {
-  const auto outcome = calibrate_check({.input = root_ / "check", .from = root_ / "start"}, {});
+  const auto outcome = calibration::calibrate_check({.input = root_ / "check", .from = root_ / "start"}, {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   EXPECT_FALSE(outcome->report.verdicts.empty());
   EXPECT_THAT(outcome->report.summary, HasSubstr("Refused"));
@@ -201,7 +201,7 @@ TEST_F(CalibrationCheck, RefusesSlopesThatPointAside) {
   }
   ASSERT_TRUE(write_calibration(root_ / "turned", turned));
   const auto outcome =
-      calibrate_check({.input = root_ / "check" / "plane.weft", .from = root_ / "turned"}, {});
+      calibration::calibrate_check({.input = root_ / "check" / "plane.weft", .from = root_ / "turned"}, {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   ASSERT_EQ(outcome->report.verdicts.size(), 1U) << outcome->report.verdicts.back().text;
   EXPECT_EQ(outcome->report.verdicts[0].name, "SLOPES_OFF");
@@ -209,12 +209,12 @@ TEST_F(CalibrationCheck, RefusesSlopesThatPointAside) {
 
 TEST_F(CalibrationCheck, ReadsTheKnownPlaneOfASingleSession) {
   const fs::path file = root_ / "check" / "check.toml";
-  const CalibrateCheckOptions options = {.input = root_ / "check" / "plane.weft",
-                                         .from = root_ / "rig" / "first"};
+  const calibration::CalibrateCheckOptions options = {.input = root_ / "check" / "plane.weft",
+                                                      .from = root_ / "rig" / "first"};
   ASSERT_TRUE(write_file(file, "[[plane]]\nsession = \"plane.weft\"\ntilt_deg = 25\nazimuth_deg = 210\n"));
-  const auto outcome = calibrate_check(options, {});
+  const auto outcome = calibration::calibrate_check(options, {});
   ASSERT_TRUE(write_file(file, "[[plane]]\nsession = \"plane.weft\"\ntilt = 25\n"));
-  const auto unknown = calibrate_check(options, {});
+  const auto unknown = calibration::calibrate_check(options, {});
   fs::remove(file);
   ASSERT_TRUE(outcome) << outcome.error().message();
   EXPECT_NEAR(outcome->report.numbers["sheets"][0]["tilt_deg"].get<double>(), 25, 1e-6);
@@ -232,35 +232,38 @@ TEST_F(CalibrationCheck, RefusesSessionsOfDifferentCalibrations) {
   Session session = *read_session(mixed / "b.weft");
   session.calibration_id = read_calibration(root_ / "rig" / "first")->id;
   ASSERT_TRUE(write_session(session));
-  const auto outcome = calibrate_check({.input = mixed, .sheet = root_ / "check" / "sheet.toml"}, {});
+  const auto outcome =
+      calibration::calibrate_check({.input = mixed, .sheet = root_ / "check" / "sheet.toml"}, {});
   ASSERT_FALSE(outcome);
   EXPECT_THAT(outcome.error().message(), HasSubstr("different calibrations"));
 }
 
 TEST_F(CalibrationCheck, NamesWhatItCannotCheckWith) {
-  const auto empty = calibrate_check({.input = root_ / "rig"}, {});
+  const auto empty = calibration::calibrate_check({.input = root_ / "rig"}, {});
   ASSERT_FALSE(empty);
   EXPECT_EQ(empty.error().kind, ErrorKind::kNoInput);
   // A session of no sheet.
-  const auto cloth =
-      calibrate_check({.input = root_ / "cloth.weft", .sheet = root_ / "check" / "sheet.toml"}, {});
+  const auto cloth = calibration::calibrate_check(
+      {.input = root_ / "cloth.weft", .sheet = root_ / "check" / "sheet.toml"}, {});
   ASSERT_FALSE(cloth);
   EXPECT_THAT(cloth.error().message(), HasSubstr("cloth.weft"));
-  const auto squares = calibrate_check({.input = root_ / "check", .square_px = 7}, {});
+  const auto squares = calibration::calibrate_check({.input = root_ / "check", .square_px = 7}, {});
   ASSERT_FALSE(squares);
   EXPECT_EQ(squares.error().kind, ErrorKind::kUsage);
-  const auto there = calibrate_check_rig({.session = root_ / "nothing", .output = root_ / "rig"}, {});
+  const auto there =
+      calibration::calibrate_check_rig({.session = root_ / "nothing", .output = root_ / "rig"}, {});
   ASSERT_FALSE(there);
   EXPECT_EQ(there.error().kind, ErrorKind::kCannotCreate) << "the output is looked at first";
 }
 
 TEST_F(CalibrationCheck, FindsNothingOnARigThatStoodStill) {
-  const auto rig = look_at_rig({.session = root_ / "cloth.weft", .from = root_ / "rig" / "first"}, {});
+  const auto rig =
+      calibration::look_at_rig({.session = root_ / "cloth.weft", .from = root_ / "rig" / "first"}, {});
   ASSERT_TRUE(rig) << rig.error().message();
   EXPECT_TRUE(rig->movement.changes.empty());
   EXPECT_EQ(rig->movement.corners, 16);
   EXPECT_EQ(rig->movement.readings, 40);
-  const auto update = calibrate_update(
+  const auto update = calibration::calibrate_update(
       {.session = root_ / "cloth.weft", .from = root_ / "rig" / "first", .output = root_ / "needless"}, {});
   ASSERT_FALSE(update);
   EXPECT_THAT(update.error().message(), HasSubstr("nothing to update"));
@@ -268,8 +271,8 @@ TEST_F(CalibrationCheck, FindsNothingOnARigThatStoodStill) {
 }
 
 TEST_F(CalibrationCheck, SaysWhereWhatIsSeenIsExplainedWorseThanUsual) {
-  CheckRigOptions options = {.session = root_ / "cloth.weft", .from = root_ / "rig" / "first"};
-  const auto usual = calibrate_check_rig(options, {});
+  calibration::CheckRigOptions options = {.session = root_ / "cloth.weft", .from = root_ / "rig" / "first"};
+  const auto usual = calibration::calibrate_check_rig(options, {});
   ASSERT_TRUE(usual) << usual.error().message();
   EXPECT_THAT(usual->warnings, testing::IsEmpty());
   // The same pictures, held against noise that is taken for less than it is, and told without changes.
@@ -280,7 +283,7 @@ TEST_F(CalibrationCheck, SaysWhereWhatIsSeenIsExplainedWorseThanUsual) {
   options.movement.flicker *= share;
   options.movement.reading_sigma *= share;
   options.movement.tilt_sigma_deg *= share;
-  const auto worse = calibrate_check_rig(options, {});
+  const auto worse = calibration::calibrate_check_rig(options, {});
   ASSERT_TRUE(worse) << worse.error().message();
   EXPECT_NEAR(worse->report.numbers["chi_square_after"].get<double>(), 3, 0.9);
   EXPECT_TRUE(worse->report.verdicts.empty()) << worse->report.verdicts.front().text;
@@ -305,7 +308,7 @@ TEST_F(CalibrationCheck, WhatIsKnownOfLedsGoesWithThemWhereTheyAreExchanged) {
     scene.lights.leds.push_back({led.position_mm, led.aim, led.mu, led.flux_rgb});
   std::swap(scene.lights.leds[1], scene.lights.leds[4]);
   simulate(scene, "swapped.weft");
-  const auto update = calibrate_update(
+  const auto update = calibration::calibrate_update(
       {.session = root_ / "swapped.weft", .from = root_ / "known", .output = root_ / "exchanged"}, {});
   ASSERT_TRUE(update) << update.error().message();
   const Calibration& now = update->calibration;
@@ -328,29 +331,30 @@ TEST_F(CalibrationCheck, WhatIsKnownOfLedsGoesWithThemWhereTheyAreExchanged) {
 TEST_F(CalibrationCheck, ATableThatSankIsFoundUpdatedAndInTheHistory) {
   simulate(with_table_lower(), "sunk.weft");
   const fs::path first = root_ / "rig" / "first", second = root_ / "rig" / "second";
-  const auto check = calibrate_check_rig(
+  const auto check = calibration::calibrate_check_rig(
       {.session = root_ / "sunk.weft", .from = first, .output = root_ / "rig" / "check"}, {});
   ASSERT_TRUE(check) << check.error().message();
   ASSERT_EQ(check->report.verdicts.size(), 1U);
   EXPECT_EQ(check->report.verdicts[0].name, "TABLE_MOVED");
 
-  const auto update = calibrate_update({.session = root_ / "sunk.weft", .from = first, .output = second}, {});
+  const auto update =
+      calibration::calibrate_update({.session = root_ / "sunk.weft", .from = first, .output = second}, {});
   ASSERT_TRUE(update) << update.error().message();
   EXPECT_NE(update->calibration.id, read_calibration(first)->id);
   EXPECT_FALSE(update->calibration.camera_covariance) << "its pose is known as the movement is";
   EXPECT_THAT(update->warnings, testing::Contains(HasSubstr("covariance of the camera was left out")));
-  const auto again = look_at_rig({.session = root_ / "sunk.weft", .from = second}, {});
+  const auto again = calibration::look_at_rig({.session = root_ / "sunk.weft", .from = second}, {});
   ASSERT_TRUE(again) << again.error().message();
   EXPECT_TRUE(again->movement.changes.empty());
 
   // The old session keeps its calibration and can be solved with the new one.
-  const auto solved =
-      solve_session({root_ / "sunk.weft", second, {}}, {.method = "fast", .output = root_ / "solved"}, {});
+  const auto solved = solve::solve_session({root_ / "sunk.weft", second, {}},
+                                           {.method = "fast", .output = root_ / "solved"}, {});
   ASSERT_TRUE(solved) << solved.error().message();
   EXPECT_EQ(solved->facts.input->calibration, update->calibration.id);
   EXPECT_NE(read_session(root_ / "sunk.weft")->calibration_id, update->calibration.id);
 
-  const auto history = calibrate_history({root_ / "rig", {}, root_ / "page"}, {});
+  const auto history = calibration::calibrate_history({root_ / "rig", {}, root_ / "page"}, {});
   ASSERT_TRUE(history) << history.error().message();
   EXPECT_EQ(history->report.numbers["calibrations"].size(), 2U);
   EXPECT_EQ(history->report.numbers["checks"].size(), 1U);
@@ -369,7 +373,7 @@ TEST_F(CalibrationCheck, PatchesAreMeasuredByTheLightThatIsKnown) {
   }
   ASSERT_TRUE(write_file(root_ / "patches.toml", text));
   const auto measured =
-      calibrate_patches({.session = root_ / "cloth.weft", .output = root_ / "with patches"}, {});
+      calibration::calibrate_patches({.session = root_ / "cloth.weft", .output = root_ / "with patches"}, {});
   ASSERT_TRUE(measured) << measured.error().message();
   ASSERT_EQ(measured->calibration.patches.size(), 4U);
   for (const WhitePatch& patch : measured->calibration.patches) {
@@ -379,12 +383,12 @@ TEST_F(CalibrationCheck, PatchesAreMeasuredByTheLightThatIsKnown) {
   }
   // A corner outside the frame.
   ASSERT_TRUE(write_file(root_ / "wrong.toml", "[[patch]]\npolygon_px = [[1, 1], [700, 1], [1, 30]]\n"));
-  const auto wrong = calibrate_patches(
+  const auto wrong = calibration::calibrate_patches(
       {.session = root_ / "cloth.weft", .patches = root_ / "wrong.toml", .output = root_ / "never"}, {});
   ASSERT_FALSE(wrong);
   EXPECT_THAT(wrong.error().message(), HasSubstr("patch 1"));
   ASSERT_TRUE(write_file(root_ / "wrong.toml", "[[patch]]\npolygon = [[1, 1], [70, 1], [1, 30]]\n"));
-  const auto misspelt = calibrate_patches(
+  const auto misspelt = calibration::calibrate_patches(
       {.session = root_ / "cloth.weft", .patches = root_ / "wrong.toml", .output = root_ / "never"}, {});
   ASSERT_FALSE(misspelt);
   EXPECT_THAT(misspelt.error().message(),
@@ -408,14 +412,14 @@ TEST_F(CalibrationCheck, PatchesOfPaperThatIsNotLambertianAboveTheClothSayThatNo
     text += "]\n";
   }
   ASSERT_TRUE(write_file(root_ / "paper.toml", text));
-  const auto measured = calibrate_patches(
+  const auto measured = calibration::calibrate_patches(
       {.session = root_ / "paper.weft", .patches = root_ / "paper.toml", .output = root_ / "with paper"}, {});
   ASSERT_TRUE(measured) << measured.error().message();
   EXPECT_EQ(measured->calibration.patches[0].delta, 0.05);
   EXPECT_EQ(measured->calibration.patches[0].height_mm, 0.3);
-  const auto plan = plan_session({root_ / "paper.weft", root_ / "with paper", {}});
+  const auto plan = solve::plan_session({root_ / "paper.weft", root_ / "with paper", {}});
   ASSERT_TRUE(plan) << plan.error().message();
-  const auto loaded = load_photographs(*plan, {});
+  const auto loaded = solve::load_photographs(*plan, {});
   ASSERT_TRUE(loaded) << loaded.error().message();
   EXPECT_THAT(loaded->conditions.warnings, testing::IsEmpty());
   ASSERT_EQ(loaded->conditions.facts.drift.size(), 10U);
@@ -433,13 +437,13 @@ TEST_F(CalibrationCheck, ADimmedLedIsFoundInTheLightOfThePatches) {
   for (double& flux : *scene.lights.leds[3].flux_rgb) flux *= 0.95;
   simulate(scene, "dim.weft");
   const auto check =
-      calibrate_check_rig({.session = root_ / "dim.weft", .from = root_ / "rig" / "first"}, {});
+      calibration::calibrate_check_rig({.session = root_ / "dim.weft", .from = root_ / "rig" / "first"}, {});
   ASSERT_TRUE(check) << check.error().message();
   ASSERT_EQ(check->report.verdicts.size(), 1U);
   EXPECT_EQ(check->report.verdicts[0].name, "LED_FADED");
   EXPECT_EQ(check->report.numbers["changes"][0]["led"], 4);
   EXPECT_NEAR(check->report.numbers["changes"][0]["factor"].get<double>(), 0.95, 0.005);
-  const auto update = calibrate_update(
+  const auto update = calibration::calibrate_update(
       {.session = root_ / "dim.weft", .from = root_ / "rig" / "first", .output = root_ / "dim"}, {});
   EXPECT_TRUE(update) << update.error().message();
 
@@ -447,7 +451,8 @@ TEST_F(CalibrationCheck, ADimmedLedIsFoundInTheLightOfThePatches) {
   Calibration no_patch = *read_calibration(root_ / "rig" / "first");
   no_patch.patches.clear();
   ASSERT_TRUE(write_calibration(root_ / "no patch", no_patch));
-  const auto blind = calibrate_check_rig({.session = root_ / "dim.weft", .from = root_ / "no patch"}, {});
+  const auto blind =
+      calibration::calibrate_check_rig({.session = root_ / "dim.weft", .from = root_ / "no patch"}, {});
   ASSERT_TRUE(blind) << blind.error().message();
   EXPECT_THAT(blind->report.summary, HasSubstr("LEDs were not checked"));
 }
@@ -459,15 +464,18 @@ TEST_F(CalibrationCheck, NamesTheSessionsBetweenTheLastGoodCheckAndTheMove) {
   fs::copy(root_ / "rig" / "first", rig / "first");
   const auto calibration = read_calibration(rig / "first");
   ASSERT_TRUE(calibration);
-  CalibrationReport good, bad;
+  calibration::CalibrationReport good, bad;
   good.part = bad.part = "check";
   good.numbers = {{"readings", 40}};
   bad.numbers = {{"cost_mean_deg", 0.4}, {"cost_worst_deg", 0.9}, {"changes", Json::array()}};
   bad.verdicts = {{"TABLE_MOVED", "The table has moved", "update"}};
-  ASSERT_TRUE(write_check_result(rig / "a", "session", *calibration, good, "2026-03-02T08:00:00Z"));
-  ASSERT_TRUE(write_check_result(rig / "b", "session", *calibration, bad, "2026-03-04T08:00:00+01:00"));
+  ASSERT_TRUE(
+      calibration::write_check_result(rig / "a", "session", *calibration, good, "2026-03-02T08:00:00Z"));
+  ASSERT_TRUE(
+      calibration::write_check_result(rig / "b", "session", *calibration, bad, "2026-03-04T08:00:00+01:00"));
   // The move was put right afterwards.
-  ASSERT_TRUE(write_check_result(rig / "c", "session", *calibration, good, "2026-03-05T08:00:00Z"));
+  ASSERT_TRUE(
+      calibration::write_check_result(rig / "c", "session", *calibration, good, "2026-03-05T08:00:00Z"));
   const char* kTimes[] = {"2026-03-01T12:00:00Z", "2026-03-03T12:00:00Z", "2026-03-04T07:30:00Z", "",
                           "2026-03-06T12:00:00Z"};
   for (std::size_t i = 0; i < 5; ++i) {
@@ -481,7 +489,7 @@ TEST_F(CalibrationCheck, NamesTheSessionsBetweenTheLastGoodCheckAndTheMove) {
     const auto written = write_session(session);
     ASSERT_TRUE(written) << written.error().message();
   }
-  const auto history = calibrate_history({rig, sessions, {}}, {});
+  const auto history = calibration::calibrate_history({rig, sessions, {}}, {});
   ASSERT_TRUE(history) << history.error().message();
   ASSERT_EQ(history->affected.size(), 2U);
   for (const std::size_t i : {0U, 1U}) {
@@ -496,7 +504,7 @@ TEST_F(CalibrationCheck, NamesTheSessionsBetweenTheLastGoodCheckAndTheMove) {
 }
 
 TEST_F(CalibrationCheck, RefusesAHistoryOfSessionsThatAreNotThere) {
-  const auto history = calibrate_history({root_ / "rig", root_ / "nowhere", {}}, {});
+  const auto history = calibration::calibrate_history({root_ / "rig", root_ / "nowhere", {}}, {});
   ASSERT_FALSE(history) << history->report.summary;
   EXPECT_EQ(history.error().kind, ErrorKind::kNoInput);
   EXPECT_THAT(history.error().message(), HasSubstr("nowhere"));
@@ -509,27 +517,30 @@ TEST_F(CalibrationCheck, TagsAloneDoNotClearLedsAndSheetsPredictNoError) {
   fs::copy(root_ / "rig" / "first", rig / "first");
   const auto calibration = read_calibration(rig / "first");
   ASSERT_TRUE(calibration);
-  CalibrationReport tags, faded, sheets;
+  calibration::CalibrationReport tags, faded, sheets;
   tags.part = faded.part = sheets.part = "check";
   tags.numbers = {{"corners", 16}, {"readings", 0}};
   faded.numbers = {{"cost_mean_deg", 0.4}, {"changes", {{{"change", "LED_FADED"}, {"led", 4}}}}};
   faded.verdicts = sheets.verdicts = {{"LED_FADED", "LED 4 has faded", "update"}};
-  ASSERT_TRUE(write_check_result(rig / "tags", "session", *calibration, tags, "2026-03-03T08:00:00Z"));
-  ASSERT_TRUE(write_check_result(rig / "faded", "session", *calibration, faded, "2026-03-04T08:00:00Z"));
+  ASSERT_TRUE(
+      calibration::write_check_result(rig / "tags", "session", *calibration, tags, "2026-03-03T08:00:00Z"));
+  ASSERT_TRUE(
+      calibration::write_check_result(rig / "faded", "session", *calibration, faded, "2026-03-04T08:00:00Z"));
   Session session = *read_session(root_ / "cloth.weft");
   session.folder = sessions / "s.weft";
   session.document = {};
   session.calibration_id = calibration->id;
   for (Shot& shot : session.shots) shot.time = "2026-03-02T12:00:00Z";
   ASSERT_TRUE(write_session(session));
-  const auto history = calibrate_history({rig, sessions, {}}, {});
+  const auto history = calibration::calibrate_history({rig, sessions, {}}, {});
   ASSERT_TRUE(history) << history.error().message();
   ASSERT_EQ(history->affected.size(), 1U) << "tags do not tell whether the LED had faded already";
   EXPECT_EQ(history->affected[0].predicted_mean_deg, 0.4);
 
   fs::remove_all(rig / "faded");
-  ASSERT_TRUE(write_check_result(rig / "sheets", "sheets", *calibration, sheets, "2026-03-04T08:00:00Z"));
-  const auto by_sheets = calibrate_history({rig, sessions, {}}, {});
+  ASSERT_TRUE(calibration::write_check_result(rig / "sheets", "sheets", *calibration, sheets,
+                                              "2026-03-04T08:00:00Z"));
+  const auto by_sheets = calibration::calibrate_history({rig, sessions, {}}, {});
   ASSERT_TRUE(by_sheets) << by_sheets.error().message();
   ASSERT_EQ(by_sheets->affected.size(), 1U);
   EXPECT_FALSE(by_sheets->affected[0].predicted_mean_deg);

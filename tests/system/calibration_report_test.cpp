@@ -10,8 +10,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-CalibrationReport small_report() {
-  CalibrationReport report;
+calibration::CalibrationReport small_report() {
+  calibration::CalibrationReport report;
   report.part = "camera";
   report.title = "Camera of <rig>";
   report.summary = "15 boards, 0.08 px";
@@ -21,7 +21,7 @@ CalibrationReport small_report() {
 }
 
 TEST(CalibrationReport, IsAPageThatNeedsNoOtherFileAndItsTwin) {
-  const std::vector<NamedFile> files = report_files(small_report());
+  const std::vector<NamedFile> files = calibration::report_files(small_report());
   ASSERT_EQ(files.size(), 2U);
   EXPECT_EQ(files[0].name, "camera.html");
   EXPECT_THAT(files[0].bytes, HasSubstr("Camera of &lt;rig&gt;"));
@@ -36,9 +36,9 @@ TEST(CalibrationReport, IsAPageThatNeedsNoOtherFileAndItsTwin) {
 }
 
 TEST(CalibrationReport, SaysFirstWhatIsWrongAndWhatToDo) {
-  CalibrationReport report = small_report();
+  calibration::CalibrationReport report = small_report();
   report.verdicts = {{"MISFIT", "chi-square is 4.2", "lock nothing"}};
-  const std::string page = report_files(report)[0].bytes;
+  const std::string page = calibration::report_files(report)[0].bytes;
   EXPECT_LT(page.find("Chi-square is 4.2."), page.find("One left out."));
   EXPECT_THAT(page, HasSubstr("Lock nothing."));
 }

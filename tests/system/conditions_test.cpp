@@ -49,15 +49,15 @@ T need(Result<T> result) {
   return *std::move(result);
 }
 
-Solved solve(const pipeline::Photographs& photographs) {
-  const pipeline::Mosaics* mosaics = photographs.mosaics();
+Solved solve(const solve::Photographs& photographs) {
+  const solve::Mosaics* mosaics = photographs.mosaics();
   Solved out = {Image<float>(photographs.size, 3),
                 Image<std::uint16_t>(photographs.size),
                 object_of(photographs.conditions.facts),
                 photographs.conditions.warnings,
                 mosaics != nullptr ? mosaics->replaced : std::vector<Photosite>(),
                 photographs.noise().value_or(NoiseModel())};
-  const auto keep = [&](const pipeline::MapBand& band) -> Result<void> {
+  const auto keep = [&](const solve::MapBand& band) -> Result<void> {
     for (int y = band.rows.y0; y < band.rows.y1; ++y) {
       for (int p = 0; p < 3; ++p) {
         std::copy_n(band.normal[static_cast<std::size_t>(p)].row(y - band.rows.y0), photographs.size.width,
@@ -67,12 +67,12 @@ Solved solve(const pipeline::Photographs& photographs) {
     }
     return {};
   };
-  need(pipeline::solve_bands(photographs, *solver::fast_method(), {}, {}, keep));
+  need(solve::solve_bands(photographs, *solver::fast_method(), {}, {}, keep));
   return out;
 }
 
 Solved solve(const fs::path& session, const fs::path& calibration = {}) {
-  return solve(need(app::load_photographs(need(app::plan_session({session, calibration, {}})), {})));
+  return solve(need(solve::load_photographs(need(solve::plan_session({session, calibration, {}})), {})));
 }
 
 // Degrees between the mean normal of an area and that of a level card: errors that noise does not hide.
@@ -161,8 +161,8 @@ class BadPhotosites : public Conditions {
     scene.camera.defects.temperature_c = 45;
     scene.effects.dark_current = scene.effects.noise = true;
     simulate(scene, session_);
-    const pipeline::SolvePlan plan = need(app::plan_session({session_, {}, {}}));
-    pipeline::Photographs loaded = need(app::load_photographs(plan, {}));
+    const solve::SolvePlan plan = need(solve::plan_session({session_, {}, {}}));
+    solve::Photographs loaded = need(solve::load_photographs(plan, {}));
     const Solved with = solve(loaded);
     EXPECT_EQ(with.conditions["hot_photosites"], with.replaced.size());
     for (const auto& [y, x] : with.replaced) {
@@ -171,9 +171,9 @@ class BadPhotosites : public Conditions {
 
     std::vector<RawFrame> as_taken;
     for (const Shot& shot : plan.lit) as_taken.push_back(need(capture::decode_raw(session_ / shot.file)));
-    const pipeline::Mosaics& mosaics = *loaded.mosaics();
-    pipeline::Mosaics unmended(std::move(as_taken), need(capture::decode_raw(dark())), mosaics.response,
-                               mosaics.exposure);
+    const solve::Mosaics& mosaics = *loaded.mosaics();
+    solve::Mosaics unmended(std::move(as_taken), need(capture::decode_raw(dark())), mosaics.response,
+                            mosaics.exposure);
     unmended.replaced = mosaics.replaced;
     loaded.frames = std::move(unmended);
     const auto is_bad = [&](int x, int y) {
@@ -248,8 +248,8 @@ TEST_F(Conditions, LedsThatChangedSinceTheirCalibrationAreToldByTheCloth) {
   EXPECT_FALSE(right.conditions.contains("cloth_gains"));
   ASSERT_TRUE(told.conditions.contains("cloth_gains")) << told.conditions;
   EXPECT_EQ(told.conditions["cloth_gains"]["leds"].size(), 10U);
-  pipeline::Photographs as_calibrated =
-      need(app::load_photographs(need(app::plan_session({session_, other, {}})), {}));
+  solve::Photographs as_calibrated =
+      need(solve::load_photographs(need(solve::plan_session({session_, other, {}})), {}));
   as_calibrated.field = need(LightField::make(*need(read_calibration(other)).lights, as_calibrated.camera,
                                               as_calibrated.size, as_calibrated.field->cloth_height_mm()));
   const double alone = mean_error_deg(solve(as_calibrated), session_);
@@ -451,8 +451,8 @@ TEST_F(Conditions, WithTwoLedsThatLitThereIsNothingToSolve) {
 
 TEST_F(Conditions, CalibrationsShareOfSigmaIsWorkedOutOnAGridAndBlended) {
   simulate(scene_named("golden", {48, 32}), session_);
-  const pipeline::Photographs photographs =
-      need(app::load_photographs(need(app::plan_session({session_, {}, {}})), {}));
+  const solve::Photographs photographs =
+      need(solve::load_photographs(need(solve::plan_session({session_, {}, {}})), {}));
   const Solved solved = solve(photographs);
   ParameterCovariance covariance;
   for (const int led : photographs.leds)
@@ -467,8 +467,8 @@ TEST_F(Conditions, CalibrationsShareOfSigmaIsWorkedOutOnAGridAndBlended) {
                                                    solved.normal.plane(2)};
   Image<float> one({48, 32}, 2), two({48, 32}, 2);
   const Rect band = {0, 0, 48, 32};
-  pipeline::fill_calibration_sigma(sigmas, band, normal, albedo.plane(), {}, 1, one.plane(0), one.plane(1));
-  pipeline::fill_calibration_sigma(sigmas, band, normal, albedo.plane(), {}, 2, two.plane(0), two.plane(1));
+  solve::fill_calibration_sigma(sigmas, band, normal, albedo.plane(), {}, 1, one.plane(0), one.plane(1));
+  solve::fill_calibration_sigma(sigmas, band, normal, albedo.plane(), {}, 2, two.plane(0), two.plane(1));
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 48; ++x) {
       ASSERT_EQ(one(x, y, 0), two(x, y, 0));

@@ -174,10 +174,10 @@ TEST(ExplainPhotographs, UnderDistantLightsHavePricesToo) {
 }
 
 // Degrees and seconds of preview, fast, standard, robust, reference, and the share of the cloth they solve.
-app::Ladder ladder_of(const std::vector<std::pair<double, double>>& levels, double solved = 1) {
-  app::Ladder ladder;
+solve::Ladder ladder_of(const std::vector<std::pair<double, double>>& levels, double solved = 1) {
+  solve::Ladder ladder;
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    app::LevelPrice level;
+    solve::LevelPrice level;
     level.level = *solver::method_names()[i].level;
     level.error.total_deg = levels[i].first;
     level.error.solved = solved;
@@ -187,13 +187,13 @@ app::Ladder ladder_of(const std::vector<std::pair<double, double>>& levels, doub
   return ladder;
 }
 
-std::string chosen(const app::Ladder& ladder, const app::LevelWish& wish) {
-  const Result<std::size_t> choice = app::choose_level(ladder, wish);
+std::string chosen(const solve::Ladder& ladder, const solve::LevelWish& wish) {
+  const Result<std::size_t> choice = solve::choose_level(ladder, wish);
   return choice ? ladder.levels[*choice].name() : choice.error().message();
 }
 
 TEST(ChooseLevel, TakesTheCheapestThatMeetsAllWishes) {
-  const app::Ladder ladder = ladder_of({{3, 1}, {1, 2}, {0.9, 4}, {0.89, 8}, {0.4, 100}});
+  const solve::Ladder ladder = ladder_of({{3, 1}, {1, 2}, {0.9, 4}, {0.89, 8}, {0.4, 100}});
   EXPECT_EQ(chosen(ladder, {.to_deg = 1}), "fast");
   EXPECT_EQ(chosen(ladder, {.to_deg = 0.5}), "reference");
   EXPECT_EQ(chosen(ladder, {.within_seconds = 1}), "preview");
@@ -203,7 +203,7 @@ TEST(ChooseLevel, TakesTheCheapestThatMeetsAllWishes) {
 }
 
 TEST(ChooseLevel, SaysBothLimitsWhereBothWishesCannotBeMet) {
-  const app::Ladder ladder = ladder_of({{3, 1}, {1, 2}, {0.9, 4}, {0.89, 8}, {0.4, 100}});
+  const solve::Ladder ladder = ladder_of({{3, 1}, {1, 2}, {0.9, 4}, {0.89, 8}, {0.4, 100}});
   EXPECT_THAT(
       chosen(ladder, {.within_seconds = 10, .to_deg = 0.5}),
       testing::AllOf(testing::HasSubstr("preview, takes 1 s at 3 degrees on 100 % of the cloth"),
@@ -212,7 +212,7 @@ TEST(ChooseLevel, SaysBothLimitsWhereBothWishesCannotBeMet) {
 }
 
 TEST(ChooseLevel, CountsClothWithoutANormalAsOffByARadian) {
-  app::Ladder ladder = ladder_of({{3, 1}, {1, 2}, {0.9, 4}, {0.89, 8}, {0.4, 100}});
+  solve::Ladder ladder = ladder_of({{3, 1}, {1, 2}, {0.9, 4}, {0.89, 8}, {0.4, 100}});
   ladder.levels[4].error.solved = 0.9;  // 0.36 + 5.73 degrees
   EXPECT_EQ(chosen(ladder, {.within_seconds = 1000}), "standard");
   EXPECT_THAT(chosen(ladder, {.to_deg = 0.5}), testing::HasSubstr("no level is that good"));
@@ -222,11 +222,11 @@ TEST(ChooseLevel, CountsClothWithoutANormalAsOffByARadian) {
 
 TEST(ChooseLevel, TakesNoneWhereMostOfTheClothHasNoNormal) {
   // What an overexposed scan gives: an error of what little is left, or of nothing.
-  app::Ladder ladder = ladder_of({{0, 1}, {0.3, 2}, {0.25, 4}, {0.25, 8}, {0.25, 100}}, 0.11);
+  solve::Ladder ladder = ladder_of({{0, 1}, {0.3, 2}, {0.25, 4}, {0.25, 8}, {0.25, 100}}, 0.11);
   ladder.levels[0].error.solved = 0;
-  for (const app::LevelWish& wish :
-       {app::LevelWish{.to_deg = 1}, app::LevelWish{.to_deg = 60}, app::LevelWish{.within_seconds = 10}}) {
-    const Result<std::size_t> choice = app::choose_level(ladder, wish);
+  for (const solve::LevelWish& wish : {solve::LevelWish{.to_deg = 1}, solve::LevelWish{.to_deg = 60},
+                                       solve::LevelWish{.within_seconds = 10}}) {
+    const Result<std::size_t> choice = solve::choose_level(ladder, wish);
     ASSERT_FALSE(choice) << ladder.levels[*choice].name();
     EXPECT_EQ(choice.error().kind, ErrorKind::kBadData);
     EXPECT_THAT(choice.error().message(),

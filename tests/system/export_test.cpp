@@ -31,9 +31,9 @@ namespace weft::test {
 namespace {
 
 namespace fs = std::filesystem;
-using app::export_maps;
-using app::ExportOptions;
-using app::ExportReport;
+using exchange::export_maps;
+using exchange::ExportOptions;
+using exchange::ExportReport;
 using testing::HasSubstr;
 
 std::vector<std::string> shipped_names() {
@@ -55,15 +55,15 @@ class Exports : public testing::Test {
     work_ = new Workspace();
     session_ = *work_ / "cloth.weft";
     simulate(scene_named("twill", {192, 128}), session_);
-    app::SolveOptions solve;
+    solve::SolveOptions solve;
     solve.method = "fast";
     solve.previews = false;
-    const auto solved = app::solve_session({.folder = session_, .calibration = {}, .leds = {}}, solve, {});
+    const auto solved = solve::solve_session({.folder = session_, .calibration = {}, .leds = {}}, solve, {});
     ASSERT_TRUE(solved) << solved.error().message();
-    app::MapsOptions maps;
+    material::MapsOptions maps;
     maps.session = session_;
-    for (const app::DerivedMap& map : app::derived_maps()) maps.maps.emplace_back(map.name);
-    const auto made = weft::app::make_maps(maps, {});
+    for (const material::DerivedMap& map : material::derived_maps()) maps.maps.emplace_back(map.name);
+    const auto made = weft::material::make_maps(maps, {});
     ASSERT_TRUE(made) << made.error().message();
     maps_ = made->folder;
     mm_per_pixel_ = made->facts.mm_per_pixel;
@@ -276,12 +276,12 @@ class GlossyExports : public Exports {
   void SetUp() override {
     ASSERT_NO_FATAL_FAILURE(Exports::SetUp());
     if (!glossy_.empty()) return;
-    app::MapsOptions maps;
+    material::MapsOptions maps;
     maps.session = session_;
     maps.maps = {"occlusion", "roughness", "mips"};
     maps.derive.cloth = "satin";
     maps.output = *work_ / "glossy";
-    const auto made = weft::app::make_maps(maps, {});
+    const auto made = weft::material::make_maps(maps, {});
     ASSERT_TRUE(made) << made.error().message();
     glossy_ = made->folder;
   }

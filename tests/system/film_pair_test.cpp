@@ -31,16 +31,16 @@ class FilmPairSession : public testing::Test {
     simulate(scene, folder_);
   }
 
-  pipeline::SolvePlan planned(const fs::path& calibration = {}) const {
-    Result<pipeline::SolvePlan> plan =
-        app::plan_session({.folder = folder_, .calibration = calibration, .leds = {}});
+  solve::SolvePlan planned(const fs::path& calibration = {}) const {
+    Result<solve::SolvePlan> plan =
+        solve::plan_session({.folder = folder_, .calibration = calibration, .leds = {}});
     EXPECT_TRUE(plan) << plan.error().message();
-    return plan ? std::move(*plan) : pipeline::SolvePlan();
+    return plan ? std::move(*plan) : solve::SolvePlan();
   }
-  static pipeline::Photographs loaded(const pipeline::SolvePlan& plan) {
-    Result<pipeline::Photographs> session = app::load_photographs(plan, {});
+  static solve::Photographs loaded(const solve::SolvePlan& plan) {
+    Result<solve::Photographs> session = solve::load_photographs(plan, {});
     EXPECT_TRUE(session) << session.error().message();
-    return session ? std::move(*session) : pipeline::Photographs();
+    return session ? std::move(*session) : solve::Photographs();
   }
   void change(const std::function<void(Session&)>& how) const {
     Result<Session> session = read_session(folder_);
@@ -54,17 +54,17 @@ class FilmPairSession : public testing::Test {
 };
 
 TEST_F(FilmPairSession, IsSolvedCrossedAndKeepsTheParallelShots) {
-  const pipeline::SolvePlan plan = planned();
+  const solve::SolvePlan plan = planned();
   ASSERT_EQ(plan.lit.size(), 10U);
   ASSERT_EQ(plan.parallel.size(), 10U);
   for (std::size_t k = 0; k < 10; ++k) {
     EXPECT_EQ(plan.lit[k].polariser, Polariser::kCrossed);
     EXPECT_EQ(plan.parallel[k].led, plan.lit[k].led);
   }
-  const pipeline::Photographs session = loaded(plan);
+  const solve::Photographs session = loaded(plan);
   EXPECT_DOUBLE_EQ(session.lobe_share, 0.02);
   ASSERT_TRUE(session.parallel);
-  EXPECT_EQ(std::get<pipeline::Mosaics>(*session.parallel).count(), 10U);
+  EXPECT_EQ(std::get<solve::Mosaics>(*session.parallel).count(), 10U);
   EXPECT_THAT(session.conditions.warnings, IsEmpty());
 }
 
@@ -73,7 +73,7 @@ TEST_F(FilmPairSession, WithoutTheParallelShotOfALedIsTheCrossedHalfAlone) {
     std::erase_if(session.shots,
                   [](const Shot& s) { return s.polariser == Polariser::kParallel && s.led == 4; });
   });
-  const pipeline::SolvePlan plan = planned();
+  const solve::SolvePlan plan = planned();
   EXPECT_THAT(plan.parallel, IsEmpty());
   EXPECT_THAT(plan.warnings, ElementsAre(HasSubstr("there is none of LED 4")));
   EXPECT_FALSE(loaded(plan).parallel);
@@ -85,14 +85,14 @@ TEST_F(FilmPairSession, OfParallelShotsAloneIsSolvedWithTwiceTheLobe) {
       return s.role == ShotRole::kLit && s.polariser == Polariser::kCrossed;
     });
   });
-  const pipeline::Photographs session = loaded(planned());
+  const solve::Photographs session = loaded(planned());
   EXPECT_DOUBLE_EQ(session.lobe_share, 2);
   EXPECT_FALSE(session.parallel);
 }
 
 // LEDs as bright as they are without films, and what films leave of their scattered light.
 TEST_F(FilmPairSession, OfARigThatWasCalibratedWithoutItsFilmsHasTheSameStrengths) {
-  const auto strength = [](const pipeline::Photographs& session) {
+  const auto strength = [](const solve::Photographs& session) {
     return session.field->at(3, 1, 20, 10).strength;
   };
   const double through_films = strength(loaded(planned()));

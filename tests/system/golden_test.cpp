@@ -57,8 +57,8 @@ int differing_pixels(const fs::path& tested, const fs::path& truth) {
 }
 
 void expect_golden_maps(const fs::path& maps) {
-  const Result<app::NormalComparison> normal =
-      app::compare_normals(maps / "normal.exr", kExpected / "normal.exr", {});
+  const Result<solve::NormalComparison> normal =
+      material::compare_normals(maps / "normal.exr", kExpected / "normal.exr", {});
   ASSERT_TRUE(normal) << normal.error().message();
   EXPECT_EQ(normal->pixels, 256 * 256);
   EXPECT_LT(normal->max_deg, 0.005);
@@ -79,12 +79,12 @@ TEST(Golden, TheStoredSessionSolvesToTheStoredMaps) {
 TEST(Golden, EverySimdTargetOfThisMachineSolvesToTheStoredMaps) {
   on_every_target([] {
     const Workspace work;
-    app::SolveOptions options;
+    solve::SolveOptions options;
     options.method = "fast";
     options.output = work / "maps";
     options.previews = false;
-    const Result<app::SolveReport> report =
-        app::solve_session({.folder = kSession, .calibration = {}, .leds = {}}, options, {});
+    const Result<solve::SolveReport> report =
+        solve::solve_session({.folder = kSession, .calibration = {}, .leds = {}}, options, {});
     ASSERT_TRUE(report) << report.error().message();
     expect_golden_maps(work / "maps");
   });

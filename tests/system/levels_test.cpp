@@ -17,19 +17,19 @@ constexpr Size kSize = {192, 128};
 
 class Levels : public testing::Test {
  protected:
-  app::SolveReport solve(const std::string& level, int threads = 2) {
-    app::SolveOptions options;
+  solve::SolveReport solve(const std::string& level, int threads = 2) {
+    solve::SolveOptions options;
     options.method = level;
     options.output = work_ / level;
     options.previews = false;
-    Result<app::SolveReport> report = app::solve_session({.folder = session_, .calibration = {}, .leds = {}},
-                                                         options, {.threads = threads});
+    Result<solve::SolveReport> report = solve::solve_session(
+        {.folder = session_, .calibration = {}, .leds = {}}, options, {.threads = threads});
     EXPECT_TRUE(report) << report.error().message();
     return std::move(*report);
   }
   double error_deg(const std::string& level) {
     const auto compared =
-        app::compare_normals(work_ / level / "normal.exr", session_ / "truth" / "normal.exr", {});
+        material::compare_normals(work_ / level / "normal.exr", session_ / "truth" / "normal.exr", {});
     EXPECT_TRUE(compared) << compared.error().message();
     return compared->mean_deg;
   }
@@ -40,7 +40,7 @@ class Levels : public testing::Test {
 
 TEST_F(Levels, ReferenceHalvesTheErrorOfADeepWeave) {
   simulate(scene_named("deep", kSize), session_);
-  const app::SolveReport report = solve("reference");
+  const solve::SolveReport report = solve("reference");
   solve("standard");
   EXPECT_LT(error_deg("reference"), 0.5 * error_deg("standard"))
       << error_deg("standard") << " degrees by standard";
@@ -59,7 +59,7 @@ TEST_F(Levels, ReferenceIsTheSameForAnyThreads) {
 
 TEST_F(Levels, ReferenceRunsNoStageOnAFlatCardAndSaysWhy) {
   simulate(scene_named("flat", kSize), session_);
-  const app::SolveReport report = solve("reference");
+  const solve::SolveReport report = solve("reference");
   EXPECT_TRUE(report.facts.reference->stages.empty());
   EXPECT_TRUE(report.facts.reference->rounds.empty());
   ASSERT_EQ(report.facts.gates.size(), 4U);
@@ -69,7 +69,7 @@ TEST_F(Levels, ReferenceRunsNoStageOnAFlatCardAndSaysWhy) {
 
 TEST_F(Levels, PreviewIsHalfTheSizeAndRightOnACard) {
   simulate(scene_named("flat", kSize), session_);
-  const app::SolveReport report = solve("preview");
+  const solve::SolveReport report = solve("preview");
   EXPECT_EQ(report.facts.size, (Size{kSize.width / 2, kSize.height / 2}));
   const auto normal = read_image(work_ / "preview" / "normal.exr");
   ASSERT_TRUE(normal) << normal.error().message();

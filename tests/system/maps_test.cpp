@@ -27,21 +27,21 @@ namespace weft::test {
 namespace {
 
 namespace fs = std::filesystem;
-using app::make_maps;
-using app::MapsOptions;
-using app::MapsReport;
-using app::Recipe;
+using material::make_maps;
+using material::MapsOptions;
+using material::MapsReport;
+using material::Recipe;
 using testing::HasSubstr;
 
 Recipe recipe_of(const std::string& steps) {
-  Result<Recipe> recipe = app::recipe_from_json({{"steps", Json::parse(steps)}}, "here");
+  Result<Recipe> recipe = material::recipe_from_json({{"steps", Json::parse(steps)}}, "here");
   EXPECT_TRUE(recipe) << recipe.error().message();
   return recipe ? std::move(*recipe) : Recipe();
 }
 
 std::vector<std::string> all_maps() {
   std::vector<std::string> names;
-  for (const app::DerivedMap& map : app::derived_maps()) names.emplace_back(map.name);
+  for (const material::DerivedMap& map : material::derived_maps()) names.emplace_back(map.name);
   return names;
 }
 
@@ -49,10 +49,11 @@ class Maps : public testing::Test {
  protected:
   void SetUp() override {
     simulate(scene_named("twill", {192, 128}), session_);
-    app::SolveOptions options;
+    solve::SolveOptions options;
     options.method = "fast";
     options.previews = false;
-    const auto report = app::solve_session({.folder = session_, .calibration = {}, .leds = {}}, options, {});
+    const auto report =
+        solve::solve_session({.folder = session_, .calibration = {}, .leds = {}}, options, {});
     ASSERT_TRUE(report) << report.error().message();
   }
 
@@ -92,7 +93,7 @@ TEST_F(Maps, OfTheirOwnDocumentAsARecipeAreThemselves) {
   const MapsOptions wanted =
       options(R"([{"do": "crop", "left_mm": 1, "width_mm": 4}, {"do": "color", "exposure": 0.5}])");
   const MapsReport first = made(wanted);
-  const Result<Recipe> again = app::read_recipe(first.folder / "maps.json");
+  const Result<Recipe> again = material::read_recipe(first.folder / "maps.json");
   ASSERT_TRUE(again) << again.error().message();
   MapsOptions repeated = wanted;
   repeated.recipe = *again;
@@ -143,7 +144,7 @@ TEST_F(Maps, ColourIsMultipliedAndHeightFollowsTheScale) {
   changed.maps = {"height"};
   const MapsReport other = made(changed);
   const auto range = [](const MapsReport& report) {
-    const app::MapFacts& height = report.facts.maps.at(0);
+    const material::MapFacts& height = report.facts.maps.at(0);
     return height.most - height.least;
   };
   EXPECT_NEAR(range(other) / range(plain), 2, 1e-4);
@@ -277,7 +278,7 @@ TEST_F(MapsOverALight, AreOfClothAloneWhereTheTableIsTakenOut) {
 TEST(SurfaceFiles, OfARelativeAlbedoKeepTheirRoughness) {
   const Workspace work;
   const Size size = {5, 4};
-  app::RectifiedSurface kept;
+  material::RectifiedSurface kept;
   material::Surface& surface = kept.surface;
   surface.mm_per_pixel = 0.1;
   surface.slope = Image<float>(size, 2);
@@ -296,16 +297,17 @@ TEST(SurfaceFiles, OfARelativeAlbedoKeepTheirRoughness) {
     const fs::path folder = work / (has_f0 ? "absolute" : "relative");
     fs::create_directory(folder);
     kept.has_f0 = has_f0;
-    const Result<void> written = app::write_surface(folder, kept, Compression::kNone);
+    const Result<void> written = material::write_surface(folder, kept, Compression::kNone);
     ASSERT_TRUE(written) << written.error().message();
     const Image<float> sigma(size, 4);  // rectified maps keep that of each channel
-    ASSERT_TRUE(write_image(folder / "sigma.exr", app::planes_of(sigma), {"R", "G", "B", "normal_deg"}, {}));
-    const auto read = app::read_surface(folder, 0.1);
+    ASSERT_TRUE(
+        write_image(folder / "sigma.exr", material::planes_of(sigma), {"R", "G", "B", "normal_deg"}, {}));
+    const auto read = material::read_surface(folder, 0.1);
     ASSERT_TRUE(read) << read.error().message();
     EXPECT_EQ(read->has_f0, has_f0);
     EXPECT_NEAR(read->surface.lobe(2, 2, 0), 0.25, 1e-3);
     EXPECT_NEAR(read->surface.lobe(2, 2, 1), 0.5, 1e-3);
-    EXPECT_NEAR(read->surface.lobe(2, 2, 3), has_f0 ? 0.07 : app::kTypedF0, 1e-4);
+    EXPECT_NEAR(read->surface.lobe(2, 2, 3), has_f0 ? 0.07 : solve::kTypedF0, 1e-4);
   }
 }
 

@@ -107,20 +107,20 @@ TEST_F(RealPhotographs, OfMattObjectsLeaveRobustNoBlockThatStandardPredictsBette
   ASSERT_NO_FATAL_FAILURE(find("harvard_dev"));
   if (IsSkipped()) return;
   for (const char* object : {"frog", "turtle"}) {
-    app::PhotoOptions options;
+    solve::PhotoOptions options;
     options.folder = data_ / object;
     options.transfer = Transfer::kLinear;
-    const Result<pipeline::SolvePlan> plan = app::plan_photos(options);
+    const Result<solve::SolvePlan> plan = solve::plan_photos(options);
     ASSERT_TRUE(plan) << plan.error().message();
-    const Result<pipeline::Photographs> photographs = app::load_photographs(*plan, {});
+    const Result<solve::Photographs> photographs = solve::load_photographs(*plan, {});
     ASSERT_TRUE(photographs) << photographs.error().message();
     const auto standard = solver::standard_method(), robust = solver::robust_method();
     Result<solver::BlockChoice> choice =
-        pipeline::choose_by_block(*photographs, {.method = standard.get()}, {.method = robust.get()}, {});
+        solve::choose_by_block(*photographs, {.method = standard.get()}, {.method = robust.get()}, {});
     ASSERT_TRUE(choice) << choice.error().message();
     const auto chosen = solver::blended_method(*standard, *robust, *choice);
     const auto median = [&](const solver::Method& method) {
-      return error_of_all(*pipeline::leave_out_lights(
+      return error_of_all(*solve::leave_out_lights(
                               *photographs, {.method = &method},
                               solver::patches_of(photographs->size, solver::PatchUse::kReport), {}))
           .median;

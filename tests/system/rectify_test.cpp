@@ -17,19 +17,20 @@ namespace weft::test {
 namespace {
 
 namespace fs = std::filesystem;
-using app::rectify_session;
-using app::RectifyOptions;
-using app::RectifyReport;
+using material::rectify_session;
+using material::RectifyOptions;
+using material::RectifyReport;
 using testing::HasSubstr;
 
 class Rectify : public SessionTest {
  protected:
   /// The folder of a solve by this method.
   fs::path solve(const std::string& method) const {
-    app::SolveOptions options;
+    solve::SolveOptions options;
     options.method = method;
     options.previews = false;
-    const auto report = app::solve_session({.folder = session_, .calibration = {}, .leds = {}}, options, {});
+    const auto report =
+        solve::solve_session({.folder = session_, .calibration = {}, .leds = {}}, options, {});
     EXPECT_TRUE(report) << report.error().message();
     return report ? report->folder : fs::path();
   }
@@ -69,7 +70,7 @@ TEST_F(Rectify, SaysWhereItsPixelsLie) {
   turned.mm_per_pixel = 0.1;
   turned.turn_deg = 90;
   const RectifyReport report = rectified(turned);
-  const app::RectifyFacts& d = report.facts;
+  const material::RectifyFacts& d = report.facts;
   EXPECT_EQ(d.source.solve, solved.filename().string());
   EXPECT_EQ(d.mm_per_pixel, 0.1);
   EXPECT_EQ(d.turn_deg, 90);

@@ -29,7 +29,7 @@ constexpr Size kSize = {128, 96};
 
 struct Solved {
   explicit Solved(Size size) : normal(size, 3) {}
-  Result<void> operator()(const pipeline::MapBand& band) {
+  Result<void> operator()(const solve::MapBand& band) {
     for (int c = 0; c < 3; ++c) {
       for (int y = 0; y < band.rows.height(); ++y) {
         std::copy_n(band.normal[static_cast<std::size_t>(c)].row(y), band.rows.width(),
@@ -40,7 +40,7 @@ struct Solved {
   }
 
   Image<float> normal;
-  pipeline::FrameFacts facts;
+  solve::FrameFacts facts;
 };
 
 Vec3 normal_at(const Image<float>& normal, int x, int y) {
@@ -64,11 +64,11 @@ class ReferenceLevel : public testing::Test {
     truth_ = std::move(truth->planes);
   }
   // The photographs, with lights said to be so many times as bright as they are and albedo without a scale.
-  pipeline::Photographs photographs(double brighter = 1) const {
-    auto loaded =
-        app::load_photographs(*app::plan_session({.folder = session_, .calibration = {}, .leds = {}}), {});
+  solve::Photographs photographs(double brighter = 1) const {
+    auto loaded = solve::load_photographs(
+        *solve::plan_session({.folder = session_, .calibration = {}, .leds = {}}), {});
     EXPECT_TRUE(loaded) << loaded.error().message();
-    pipeline::Photographs photographs = std::move(*loaded);
+    solve::Photographs photographs = std::move(*loaded);
     if (brighter == 1) return photographs;
     NearLights lights = std::get<NearLights>(photographs.field->lights());
     for (auto& led : lights.leds) {
@@ -79,15 +79,15 @@ class ReferenceLevel : public testing::Test {
     photographs.albedo_scale = AlbedoScale::kRelative;
     return photographs;
   }
-  static Solved solve(const pipeline::Photographs& photographs, const char* level) {
+  static Solved solve(const solve::Photographs& photographs, const char* level) {
     Solved solved(photographs.size);
-    auto facts = pipeline::solve_frame(photographs, *solver::find_method(level), pipeline::kSolveTile,
-                                       {.threads = 2}, std::ref(solved));
+    auto facts = solve::solve_frame(photographs, *solver::find_method(level), solve::kSolveTile,
+                                    {.threads = 2}, std::ref(solved));
     EXPECT_TRUE(facts) << facts.error().message();
     solved.facts = std::move(*facts);
     return solved;
   }
-  double error_deg(const pipeline::Photographs& photographs, const char* level) const {
+  double error_deg(const solve::Photographs& photographs, const char* level) const {
     return mean_angle_deg(solve(photographs, level).normal, truth_);
   }
 
@@ -110,7 +110,7 @@ TEST_F(ReferenceLevel, LeavesAClothAloneThatShowsNeitherShadowsNorBounces) {
   simulator::Scene scene = scene_named("deep", kSize);
   scene.effects.cast_shadows = scene.effects.interreflection = false;
   photograph(scene);
-  const pipeline::Photographs taken = photographs();
+  const solve::Photographs taken = photographs();
   const Solved reference = solve(taken, "reference");
   EXPECT_TRUE(reference.facts.reference->gates.shadows()) << "there would be shadows on such slopes";
   EXPECT_FALSE(reference.facts.reference->stages.any());
@@ -119,7 +119,7 @@ TEST_F(ReferenceLevel, LeavesAClothAloneThatShowsNeitherShadowsNorBounces) {
 
 TEST_F(ReferenceLevel, IsTheSameForIntensitiesOfAnyScale) {
   photograph(scene_named("deep", kSize));
-  const pipeline::Photographs dark = photographs(0.1), bright = photographs(10);
+  const solve::Photographs dark = photographs(0.1), bright = photographs(10);
   std::map<std::string, double> error;
   for (const char* level : {"fast", "standard", "robust", "reference"}) {
     const Solved a = solve(dark, level), b = solve(bright, level);
@@ -148,7 +148,7 @@ TEST_F(ReferenceLevel, OfGlossWithoutBouncesIsNoWorseThanRobust) {
   scene.effects.cast_shadows = scene.effects.interreflection = false;
   photograph(scene);
   for (const double scale : {1.0, 0.3}) {
-    const pipeline::Photographs taken = photographs(scale);
+    const solve::Photographs taken = photographs(scale);
     const Solved robust = solve(taken, "robust");
     ASSERT_TRUE(robust.facts.gloss->is_measured()) << scale;
     EXPECT_LE(error_deg(taken, "reference"), 1.01 * mean_angle_deg(robust.normal, truth_)) << scale;
@@ -160,7 +160,7 @@ TEST_F(ReferenceLevel, TakesBouncesOutOfWhiteClothWhoseAlbedoHasNoScale) {
   for (const double albedo : {0.6, 0.8}) {
     scene.material.albedo.fill(albedo);
     photograph(scene);
-    const pipeline::Photographs taken = photographs(0.3);
+    const solve::Photographs taken = photographs(0.3);
     EXPECT_LT(error_deg(taken, "reference"), 0.6 * error_deg(taken, "robust")) << "albedo " << albedo;
     std::filesystem::remove_all(session_);
   }
@@ -168,32 +168,32 @@ TEST_F(ReferenceLevel, TakesBouncesOutOfWhiteClothWhoseAlbedoHasNoScale) {
 
 TEST_F(ReferenceLevel, IsNoWorseOnAShallowWeaveOfUnknownAlbedo) {
   photograph(scene_named("plain_family", kSize));
-  const pipeline::Photographs dark = photographs(0.3);
+  const solve::Photographs dark = photographs(0.3);
   EXPECT_LE(error_deg(dark, "reference"), 1.02 * error_deg(dark, "robust"));
 }
 
 TEST_F(ReferenceLevel, RefusesARoundThatTurnsNormalsMoreThanTheOneBefore) {
   photograph(scene_named("deep", kSize));
-  const pipeline::Photographs dark = photographs(0.2);
-  std::vector<pipeline::Stage> forced = pipeline::stages_of(solver::method_of(solver::Level::kReference));
+  const solve::Photographs dark = photographs(0.2);
+  std::vector<solve::Stage> forced = solve::stages_of(solver::method_of(solver::Level::kReference));
   for (const char* judge : {"gates", "choice", "comparison"})
-    forced = pipeline::without(judge, std::move(forced));
+    forced = solve::without(judge, std::move(forced));
   Solved solved(kSize);
-  const auto facts = pipeline::solve_by(forced, dark, pipeline::kSolveTile, {.threads = 2}, std::ref(solved));
+  const auto facts = solve::solve_by(forced, dark, solve::kSolveTile, {.threads = 2}, std::ref(solved));
   ASSERT_TRUE(facts) << facts.error().message();
   int refused = 0;
-  for (const pipeline::ReferenceRound& round : facts->reference->rounds) refused += round.is_refused;
+  for (const solve::ReferenceRound& round : facts->reference->rounds) refused += round.is_refused;
   EXPECT_EQ(refused, 1) << "albedo is taken for five times what it is";
 }
 
 TEST_F(ReferenceLevel, LooksCoarselyUntilTheLastRoundAndTakesNoneThatWouldTurnNothing) {
   photograph(scene_named("plain_family", kSize));
-  const pipeline::Photographs taken = photographs();
-  const auto error_and_rounds = [&](const pipeline::ReferenceOptions& options) {
+  const solve::Photographs taken = photographs();
+  const auto error_and_rounds = [&](const solve::ReferenceOptions& options) {
     Solved solved(kSize);
     const auto facts =
-        pipeline::solve_by(pipeline::stages_of(solver::method_of(solver::Level::kReference), options), taken,
-                           pipeline::kSolveTile, {.threads = 2}, std::ref(solved));
+        solve::solve_by(solve::stages_of(solver::method_of(solver::Level::kReference), options), taken,
+                        solve::kSolveTile, {.threads = 2}, std::ref(solved));
     EXPECT_TRUE(facts) << facts.error().message();
     return std::pair(mean_angle_deg(solved.normal, truth_), facts->reference->rounds.size());
   };
@@ -207,11 +207,11 @@ TEST_F(ReferenceLevel, LooksCoarselyUntilTheLastRoundAndTakesNoneThatWouldTurnNo
 TEST_F(ReferenceLevel, PublishesTheSolutionOfRobustWhereThatPredictsLeftOutLightBetter) {
   simulator::Scene scene = scene_named("deep", {256, 192});
   photograph(scene);
-  pipeline::Photographs taken = photographs();
+  solve::Photographs taken = photographs();
   std::filesystem::remove_all(session_);
   scene.effects.cast_shadows = scene.effects.interreflection = false;
   photograph(scene);
-  const pipeline::Photographs bare = photographs();
+  const solve::Photographs bare = photographs();
   for (const solver::Patch& patch : solver::patches_of(taken.size, solver::PatchUse::kReport)) {
     const int y0 = patch.pixels.y0 / kRowGroup * kRowGroup;
     for (std::size_t k = 0; k < taken.count(); ++k) {
@@ -222,21 +222,21 @@ TEST_F(ReferenceLevel, PublishesTheSolutionOfRobustWhereThatPredictsLeftOutLight
     }
   }
   const Solved robust = solve(taken, "robust"), reference = solve(taken, "reference");
-  const pipeline::ReferenceFacts& facts = *reference.facts.reference;
+  const solve::ReferenceFacts& facts = *reference.facts.reference;
   EXPECT_TRUE(facts.choice.stages.any()) << "of the first round";
   EXPECT_TRUE(facts.robust_is_published) << "gain over robust " << facts.over_robust.mean;
   EXPECT_FALSE(facts.stages.any());
   EXPECT_LT(mean_angle_deg(robust.normal, reference.normal), 1e-4);
-  EXPECT_EQ(app::facts_of(facts).published, "robust");
-  EXPECT_THAT(app::warnings_of(facts), testing::Contains(testing::HasSubstr("that of robust")));
+  EXPECT_EQ(solve::facts_of(facts).published, "robust");
+  EXPECT_THAT(solve::warnings_of(facts), testing::Contains(testing::HasSubstr("that of robust")));
 }
 
 TEST_F(ReferenceLevel, AsksForTheMemoryOfItsFrames) {
   photograph(scene_named("flat", kSize));
-  pipeline::SolvePlan plan = *app::plan_session({.folder = session_, .calibration = {}, .leds = {}});
-  const std::uint64_t of_tiles = app::memory_needed(plan, 1);
+  solve::SolvePlan plan = *solve::plan_session({.folder = session_, .calibration = {}, .leds = {}});
+  const std::uint64_t of_tiles = solve::memory_needed(plan, 1);
   plan.extent = solver::Extent::kWholeFrame;
-  EXPECT_GE(app::memory_needed(plan, 1), of_tiles + 69 * static_cast<std::uint64_t>(kSize.pixels()));
+  EXPECT_GE(solve::memory_needed(plan, 1), of_tiles + 69 * static_cast<std::uint64_t>(kSize.pixels()));
 }
 
 }  // namespace

@@ -32,23 +32,23 @@ constexpr Size kClothSize = {256, 192};
 
 class Registration : public testing::Test {
  protected:
-  pipeline::Photographs photographs_of(const simulator::Scene& scene, const char* name) {
+  solve::Photographs photographs_of(const simulator::Scene& scene, const char* name) {
     simulate(scene, work_ / name);
-    app::SessionOptions options;
+    solve::SessionOptions options;
     options.folder = work_ / name;
-    return *app::load_photographs(*app::plan_session(options), {});
+    return *solve::load_photographs(*solve::plan_session(options), {});
   }
-  static pipeline::MovedShots need_far(const pipeline::Photographs& photographs) {
-    Result<pipeline::MovedShots> far = pipeline::find_far_shifts(photographs, {});
+  static solve::MovedShots need_far(const solve::Photographs& photographs) {
+    Result<solve::MovedShots> far = solve::find_far_shifts(photographs, {});
     if (!far) throw std::runtime_error(far.error().message());
     return *std::move(far);
   }
-  double mean_error_deg(const pipeline::Photographs& photographs) {
+  double mean_error_deg(const solve::Photographs& photographs) {
     const LoadedImage truth = *read_image(work_ / "still.weft" / "truth" / "normal.exr");
     double sum = 0;
-    (void)pipeline::solve_bands(
+    (void)solve::solve_bands(
         photographs, *solver::fast_method(), {.width = 64, .height = 4}, {},
-        [&](const pipeline::MapBand& band) -> Result<void> {
+        [&](const solve::MapBand& band) -> Result<void> {
           for (int y = band.rows.y0; y < band.rows.y1; ++y) {
             for (int x = 0; x < kClothSize.width; ++x) {
               const int row = y - band.rows.y0;
@@ -74,35 +74,35 @@ TEST_F(Registration, OfOneShotThatMovedTakesMostOfItsCostAway) {
   simulator::Scene moves = still_;
   moves.effects.movement = true;
   moves.camera.movement.sigma_deg = 0;
-  pipeline::Photographs session = photographs_of(still_, "still.weft");
-  pipeline::Photographs moved = photographs_of(moves, "moved.weft");
+  solve::Photographs session = photographs_of(still_, "still.weft");
+  solve::Photographs moved = photographs_of(moves, "moved.weft");
   const double unmoved_deg = mean_error_deg(session);
   std::swap(session.mosaics()->frames[4], moved.mosaics()->frames[4]);
   const double moved_deg = mean_error_deg(session);
-  const pipeline::SessionShifts shifts = *pipeline::register_shots(session, {});
-  const std::vector<std::size_t> left_out = shifts.with(pipeline::ShiftVerdict::kLeftOut);
-  ASSERT_EQ(left_out, std::vector<std::size_t>{4}) << list_of(app::facts_of(shifts, {})).dump(1);
-  ASSERT_TRUE(pipeline::leave_out(left_out, session));
+  const solve::SessionShifts shifts = *solve::register_shots(session, {});
+  const std::vector<std::size_t> left_out = shifts.with(solve::ShiftVerdict::kLeftOut);
+  ASSERT_EQ(left_out, std::vector<std::size_t>{4}) << list_of(solve::facts_of(shifts, {})).dump(1);
+  ASSERT_TRUE(solve::leave_out(left_out, session));
   const double registered_deg = mean_error_deg(session);
   EXPECT_LT(registered_deg - unmoved_deg, 0.3 * (moved_deg - unmoved_deg))
       << "unmoved " << unmoved_deg << ", moved " << moved_deg << ", registered " << registered_deg;
 }
 
 TEST_F(Registration, OfASessionWithoutMovementChangesNothing) {
-  const pipeline::Photographs session = photographs_of(still_, "still.weft");
-  const pipeline::SessionShifts shifts = *pipeline::register_shots(session, {});
-  EXPECT_EQ(shifts.with(pipeline::ShiftVerdict::kStill).size(), 10U)
-      << list_of(app::facts_of(shifts, {})).dump(1);
+  const solve::Photographs session = photographs_of(still_, "still.weft");
+  const solve::SessionShifts shifts = *solve::register_shots(session, {});
+  EXPECT_EQ(shifts.with(solve::ShiftVerdict::kStill).size(), 10U)
+      << list_of(solve::facts_of(shifts, {})).dump(1);
 }
 
 TEST_F(Registration, IsLeftOutWhereThatIsAskedFor) {
   simulate(still_, work_ / "still.weft");
   const auto solved = [&](bool registration) {
-    app::SolveOptions options;
+    solve::SolveOptions options;
     options.registration = registration;
-    return app::solve_session({work_ / "still.weft", {}, {}}, options, {});
+    return solve::solve_session({work_ / "still.weft", {}, {}}, options, {});
   };
-  const Result<app::SolveReport> with = solved(true), without = solved(false);
+  const Result<solve::SolveReport> with = solved(true), without = solved(false);
   ASSERT_TRUE(with && without);
   EXPECT_EQ(with->facts.registration->size(), 10U);
   EXPECT_TRUE(without->facts.registration->empty());
@@ -115,13 +115,13 @@ TEST_F(Registration, TakesNoGlossForMovement) {
     satin.geometry = simulator::family_settings(family);
     satin.geometry.warp_pitch_mm = satin.geometry.weft_pitch_mm = 0.8;
     satin.effects.finite_led = satin.effects.cast_shadows = satin.effects.interreflection = false;
-    const pipeline::Photographs session =
+    const solve::Photographs session =
         photographs_of(satin, family == simulator::Family::kSmooth ? "smooth.weft" : "plain.weft");
-    const pipeline::SessionShifts shifts = *pipeline::register_shots(session, {});
-    EXPECT_EQ(shifts.with(pipeline::ShiftVerdict::kStill).size(), 10U)
-        << list_of(app::facts_of(shifts, {})).dump(1);
+    const solve::SessionShifts shifts = *solve::register_shots(session, {});
+    EXPECT_EQ(shifts.with(solve::ShiftVerdict::kStill).size(), 10U)
+        << list_of(solve::facts_of(shifts, {})).dump(1);
     double farthest_px = 0;
-    for (const pipeline::ShotShift& shot : shifts.shots)
+    for (const solve::ShotShift& shot : shifts.shots)
       farthest_px = std::max(farthest_px, std::abs(shot.measured.shift.dx_px));
     EXPECT_GT(farthest_px, 0.3) << "gloss feigns no movement here";
   }
@@ -135,18 +135,18 @@ TEST_F(Registration, FindsAPushByManyPixelsAndNoneInGloss) {
     pushed.effects.movement = true;
     pushed.camera.movement.sigma_mm = 0.6;
     pushed.camera.movement.sigma_deg = 0;
-    pipeline::Photographs session = photographs_of(still, (name + std::string("_still.weft")).c_str());
-    pipeline::Photographs other = photographs_of(pushed, (name + std::string("_pushed.weft")).c_str());
+    solve::Photographs session = photographs_of(still, (name + std::string("_still.weft")).c_str());
+    solve::Photographs other = photographs_of(pushed, (name + std::string("_pushed.weft")).c_str());
     EXPECT_TRUE(need_far(session).moved.empty()) << name;
     std::swap(session.mosaics()->frames[4], other.mosaics()->frames[4]);
-    const pipeline::MovedShots far = need_far(session);
+    const solve::MovedShots far = need_far(session);
     EXPECT_EQ(far.moved, std::vector<std::size_t>{4}) << name << ": explained " << far.explained;
     EXPECT_LE(far.most_px, far.reach_px * std::sqrt(2.0)) << name;
   }
   for (const char* name : {"satin_sheen", "velvet"}) {
     simulator::Scene glossy = scene_named(name, kClothSize);
     glossy.effects.finite_led = glossy.effects.cast_shadows = glossy.effects.interreflection = false;
-    const pipeline::MovedShots far = need_far(photographs_of(glossy, name));
+    const solve::MovedShots far = need_far(photographs_of(glossy, name));
     EXPECT_TRUE(far.moved.empty()) << name << ": " << far.most_px << " px, explained " << far.explained;
   }
 }

@@ -54,12 +54,12 @@ simulator::Scene cloth(const std::string& family, const std::string& material, i
 }
 
 solver::Evidence evidence_of(const fs::path& session) {
-  const Result<pipeline::SolvePlan> plan =
-      app::plan_session({.folder = session, .calibration = {}, .leds = {}});
+  const Result<solve::SolvePlan> plan =
+      solve::plan_session({.folder = session, .calibration = {}, .leds = {}});
   if (!plan) throw std::runtime_error(plan.error().message());
-  const Result<pipeline::Photographs> loaded = app::load_photographs(*plan, {});
+  const Result<solve::Photographs> loaded = solve::load_photographs(*plan, {});
   if (!loaded) throw std::runtime_error(loaded.error().message());
-  return pipeline::read_evidence(*loaded);
+  return solve::read_evidence(*loaded);
 }
 
 void swap_photographs(solver::Evidence& evidence, std::size_t a, std::size_t b) {
@@ -211,18 +211,18 @@ TEST(MapSummary, CountsTheShareOfTheClothThatHasANormal) {
   Image<std::uint16_t> status({10, 1});
   for (int x = 4; x < 8; ++x) status(x, 0) = kSaturated | kNoSolution;
   for (int x = 8; x < 10; ++x) status(x, 0) = kInvalidReading | kNoSolution;  // outside a mask: no cloth
-  app::MapSummary maps({10, 1}), none({10, 1});
-  pipeline::MapBand band;
+  solve::MapSummary maps({10, 1}), none({10, 1});
+  solve::MapBand band;
   band.status = status.plane();
   maps.add(band, {});
   EXPECT_DOUBLE_EQ(maps.expected().solved, 0.5);
   EXPECT_NEAR(maps.expected().total_deg, 180 / std::numbers::pi, 1e-12) << "no angle is known";
   EXPECT_NEAR(maps.expected().of_whole_deg(), 180 / std::numbers::pi, 1e-12);
   EXPECT_EQ(none.expected().solved, 0);
-  EXPECT_EQ(app::error_in_words(0, 0), "nothing solved");
-  EXPECT_EQ(app::error_in_words(0.248, 0.108), "0.248 degrees on 11 % of the cloth");
-  EXPECT_EQ(app::share_in_words(0.9999), "over 99 %");
-  EXPECT_EQ(app::share_in_words(1), "100 %");
+  EXPECT_EQ(solve::error_in_words(0, 0), "nothing solved");
+  EXPECT_EQ(solve::error_in_words(0.248, 0.108), "0.248 degrees on 11 % of the cloth");
+  EXPECT_EQ(solve::share_in_words(0.9999), "over 99 %");
+  EXPECT_EQ(solve::share_in_words(1), "100 %");
 }
 
 TEST(MapSummary, FindsQuantilesOfSigmaAndOfItsPartsWhereTheNormalIsKnown) {
@@ -235,8 +235,8 @@ TEST(MapSummary, FindsQuantilesOfSigmaAndOfItsPartsWhereTheNormalIsKnown) {
     sum(x, 0) = 0.02F * static_cast<float>(x + 1);
   }
   for (int x = 800; x < kWidth; ++x) sum(x, 0) = 180;  // without a normal
-  app::MapSummary with({kWidth, 1}), without({kWidth, 1});
-  pipeline::MapBand band;
+  solve::MapSummary with({kWidth, 1}), without({kWidth, 1});
+  solve::MapBand band;
   band.albedo_rows = {0, 0, kWidth, 1};
   band.sigma_normal_deg = noise.plane();
   band.model_normal_deg = model.plane();
@@ -257,7 +257,7 @@ TEST(MapSummary, FindsQuantilesOfSigmaAndOfItsPartsWhereTheNormalIsKnown) {
 TEST(Budget, NamesTheModelAndTheCalibrationWhereItHasACovariance) {
   Workspace work;
   simulate(cloth("plain", "lambert", 5), work / "c");
-  Result<pipeline::SolvePlan> plan = app::plan_session({.folder = work / "c", .calibration = {}, .leds = {}});
+  Result<solve::SolvePlan> plan = solve::plan_session({.folder = work / "c", .calibration = {}, .leds = {}});
   ASSERT_TRUE(plan) << plan.error().message();
   Calibration known = plan->calibration;
   known.light_covariance = ParameterCovariance{};
@@ -269,11 +269,11 @@ TEST(Budget, NamesTheModelAndTheCalibrationWhereItHasACovariance) {
   const Result<Calibration> written = write_calibration(work / "known", std::move(known));
   ASSERT_TRUE(written) << written.error().message();
 
-  app::SolveOptions options;
+  solve::SolveOptions options;
   options.previews = false;
   options.output = work / "maps";
-  const Result<app::SolveReport> solved =
-      app::solve_session({.folder = work / "c", .calibration = work / "known", .leds = {}}, options, {});
+  const Result<solve::SolveReport> solved =
+      solve::solve_session({.folder = work / "c", .calibration = work / "known", .leds = {}}, options, {});
   ASSERT_TRUE(solved) << solved.error().message();
   const Json report = Json::parse(bytes_of(work / "maps" / "report.json"));
   const double median_deg = report["sigma_calibration_deg"]["median"];
@@ -293,18 +293,18 @@ TEST(Budget, NamesTheModelAndTheCalibrationWhereItHasACovariance) {
 }
 
 // Ten shots of which the fifth has moved, at a cost.
-app::PhotographsSummary moved_summary(double cost_deg) {
-  app::PhotographsSummary summary;
+solve::PhotographsSummary moved_summary(double cost_deg) {
+  solve::PhotographsSummary summary;
   for (int k = 1; k <= 10; ++k) summary.numbers.push_back(k);
   summary.shifts.shots.resize(10);
-  summary.shifts.shots[4].verdict = pipeline::ShiftVerdict::kFlagged;
+  summary.shifts.shots[4].verdict = solve::ShiftVerdict::kFlagged;
   summary.shifts.shots[4].measured.cost_deg = cost_deg;
   return summary;
 }
 
 TEST(Verdicts, WarnOfAClothThatMovedWhereItCostsADegreeAndNotWhereATenth) {
-  EXPECT_THAT(app::verdicts_of(moved_summary(0.15), 0, {}, {}), IsEmpty());
-  const std::vector<Verdict> verdicts = app::verdicts_of(moved_summary(1.1), 0, {}, {});
+  EXPECT_THAT(solve::verdicts_of(moved_summary(0.15), 0, {}, {}), IsEmpty());
+  const std::vector<Verdict> verdicts = solve::verdicts_of(moved_summary(1.1), 0, {}, {});
   ASSERT_EQ(verdicts.size(), 1U);
   EXPECT_EQ(verdicts[0].name, "CLOTH_MOVED");
   EXPECT_THAT(verdicts[0].text, testing::HasSubstr("LED 5"));
@@ -312,18 +312,18 @@ TEST(Verdicts, WarnOfAClothThatMovedWhereItCostsADegreeAndNotWhereATenth) {
 }
 
 // Ten shots that cannot be registered and deviate.
-app::PhotographsSummary unregistered_summary(double residual) {
-  app::PhotographsSummary summary = moved_summary(1.1);
+solve::PhotographsSummary unregistered_summary(double residual) {
+  solve::PhotographsSummary summary = moved_summary(1.1);
   summary.shifts.found = false;
   summary.diagnosis.residual = residual;
-  summary.far_shifts = pipeline::MovedShots{{}, 0, 0, 128};
+  summary.far_shifts = solve::MovedShots{{}, 0, 0, 128};
   return summary;
 }
 
 TEST(Verdicts, NameNoCauseOfReadingsThatDoNotFitUnlessOneWasFound) {
-  EXPECT_THAT(app::verdicts_of(unregistered_summary(0.004), 0, {}, {}), IsEmpty());
-  app::PhotographsSummary summary = unregistered_summary(0.09);
-  std::vector<Verdict> verdicts = app::verdicts_of(summary, 0, {}, solver::Level::kStandard);
+  EXPECT_THAT(solve::verdicts_of(unregistered_summary(0.004), 0, {}, {}), IsEmpty());
+  solve::PhotographsSummary summary = unregistered_summary(0.09);
+  std::vector<Verdict> verdicts = solve::verdicts_of(summary, 0, {}, solver::Level::kStandard);
   ASSERT_EQ(verdicts.size(), 1U);
   EXPECT_EQ(verdicts[0].name, "READINGS_DO_NOT_FIT");
   EXPECT_THAT(verdicts[0].text, HasSubstr("by 9 percent"));
@@ -331,85 +331,84 @@ TEST(Verdicts, NameNoCauseOfReadingsThatDoNotFitUnlessOneWasFound) {
   EXPECT_THAT(verdicts[0].remedy, HasSubstr("--quality robust"));
   summary.diagnosis.residual = 5.62;
   summary.of_session = false;
-  verdicts = app::verdicts_of(summary, 0, {}, solver::Level::kRobust);
+  verdicts = solve::verdicts_of(summary, 0, {}, solver::Level::kRobust);
   EXPECT_THAT(verdicts.at(0).text, HasSubstr("by over 100 percent"));
   EXPECT_THAT(verdicts.at(0).remedy, HasSubstr("--transfer"));
   EXPECT_THAT(verdicts.at(0).remedy, Not(HasSubstr("robust")));
   const LeftOutFacts unfit = {{.median = 0.2, .rms = 0.3, .readings = 100}, {}};
-  verdicts = app::verdicts_of(summary, 0, unfit, solver::Level::kStandard);
+  verdicts = solve::verdicts_of(summary, 0, unfit, solver::Level::kStandard);
   ASSERT_EQ(verdicts.size(), 1U);
   EXPECT_EQ(verdicts[0].name, "LIGHTS_DO_NOT_FIT") << "what left-out light says is said";
 }
 
 TEST(Verdicts, SayThatTheClothMovedWhereAFarShiftExplainsIt) {
-  app::PhotographsSummary summary = unregistered_summary(0.09);
-  summary.far_shifts = pipeline::MovedShots{{6, 7, 8, 9}, 23.4, 0.84, 128};
-  const std::vector<Verdict> verdicts = app::verdicts_of(summary, 0, {}, solver::Level::kStandard);
+  solve::PhotographsSummary summary = unregistered_summary(0.09);
+  summary.far_shifts = solve::MovedShots{{6, 7, 8, 9}, 23.4, 0.84, 128};
+  const std::vector<Verdict> verdicts = solve::verdicts_of(summary, 0, {}, solver::Level::kStandard);
   ASSERT_EQ(verdicts.size(), 1U);
   EXPECT_EQ(verdicts[0].name, "CLOTH_MOVED");
   EXPECT_THAT(verdicts[0].text, HasSubstr("LEDs 7, 8, 9 and 10 it lies up to 23 pixels"));
   EXPECT_THAT(verdicts[0].text, HasSubstr("84 percent"));
   EXPECT_THAT(verdicts[0].remedy, HasSubstr("--lights 1,2,3,4,5,6"));
   summary.far_shifts->moved = {1, 2, 3, 4, 5, 6, 7, 8, 9};
-  EXPECT_THAT(app::verdicts_of(summary, 0, {}, {}).at(0).remedy, Not(HasSubstr("--lights")))
+  EXPECT_THAT(solve::verdicts_of(summary, 0, {}, {}).at(0).remedy, Not(HasSubstr("--lights")))
       << "three are left";
 }
 
 TEST(Verdicts, SayOfGlossThatItShinesAndNotThatItMoved) {
-  app::PhotographsSummary summary = unregistered_summary(0.11);
+  solve::PhotographsSummary summary = unregistered_summary(0.11);
   summary.glossy_share = 0.9;  // solved with its lobe
-  EXPECT_THAT(app::verdicts_of(summary, 0, {}, {}), IsEmpty());
+  EXPECT_THAT(solve::verdicts_of(summary, 0, {}, {}), IsEmpty());
   summary.glossy_share = 0;
   summary.outshining = 1;
-  const std::vector<Verdict> dominated = app::verdicts_of(summary, 0.5, {}, {});
+  const std::vector<Verdict> dominated = solve::verdicts_of(summary, 0.5, {}, {});
   ASSERT_EQ(dominated.size(), 1U);
   EXPECT_EQ(dominated[0].name, "SPECULAR_DOMINATED");
 }
 
 TEST(Verdicts, OfPhotographsSpeakOfNoScan) {
-  app::PhotographsSummary summary = moved_summary(1.1);
+  solve::PhotographsSummary summary = moved_summary(1.1);
   summary.of_session = false;
   summary.outshining = 1;
   summary.shadow_reach_is_capped = true;
   summary.diagnosis.faults = {{FaultKind::kDead, {1}, {}},
                               {FaultKind::kExchanged, {2, 3}, {3, 2}},
                               {FaultKind::kGain, {5}, {}, 0.5, 0, 0, 0, 3}};
-  for (const Verdict& verdict : app::verdicts_of(summary, 0.5, {}, solver::Level::kStandard)) {
+  for (const Verdict& verdict : solve::verdicts_of(summary, 0.5, {}, solver::Level::kStandard)) {
     for (const char* word : {"scan", "wiring", "cable", "calibrat"})
       EXPECT_THAT(verdict.remedy, Not(HasSubstr(word))) << verdict.name;
   }
 }
 
 TEST(ExposureVerdict, TellsOverAndDarkPhotographsFromGoodOnes) {
-  const pipeline::Fullness good = {.full = 0.02, .missing = 0, .lit = 0.98, .brightest = 0.8};
-  EXPECT_FALSE(pipeline::exposure_verdict(good, 0.001, 3, true))
-      << "a dark weave is noisy in a good exposure";
-  const pipeline::Fullness over = {.full = 0.97, .missing = 0, .lit = 0.03, .brightest = 1};
-  const std::optional<Verdict> too_long = pipeline::exposure_verdict(over, 0.89, 0.2, true);
+  const solve::Fullness good = {.full = 0.02, .missing = 0, .lit = 0.98, .brightest = 0.8};
+  EXPECT_FALSE(solve::exposure_verdict(good, 0.001, 3, true)) << "a dark weave is noisy in a good exposure";
+  const solve::Fullness over = {.full = 0.97, .missing = 0, .lit = 0.03, .brightest = 1};
+  const std::optional<Verdict> too_long = solve::exposure_verdict(over, 0.89, 0.2, true);
   ASSERT_TRUE(too_long);
   EXPECT_EQ(too_long->name, "OVEREXPOSED");
   EXPECT_THAT(too_long->text, HasSubstr("97 percent of the readings are full"));
   EXPECT_THAT(too_long->text, HasSubstr("89 percent of the picture has no solution"));
-  const pipeline::Fullness dark = {.full = 0, .missing = 0, .lit = 0.9, .brightest = 0.026};
-  const std::optional<Verdict> too_short = pipeline::exposure_verdict(dark, 0, 5.1, true);
+  const solve::Fullness dark = {.full = 0, .missing = 0, .lit = 0.9, .brightest = 0.026};
+  const std::optional<Verdict> too_short = solve::exposure_verdict(dark, 0, 5.1, true);
   ASSERT_TRUE(too_short);
   EXPECT_EQ(too_short->name, "UNDEREXPOSED");
   EXPECT_THAT(too_short->text, HasSubstr("2.6 percent of white"));
-  EXPECT_FALSE(pipeline::exposure_verdict(dark, 0, 0.4, true)) << "noise does no harm";
+  EXPECT_FALSE(solve::exposure_verdict(dark, 0, 0.4, true)) << "noise does no harm";
 }
 
 TEST(Verdicts, WarnOfShadowsFromFartherThanTheyAreLookedFor) {
-  app::PhotographsSummary summary;
+  solve::PhotographsSummary summary;
   summary.shadow_reach_is_capped = true;
-  ASSERT_EQ(app::verdicts_of(summary, 0, {}, {}).size(), 1U);
-  EXPECT_EQ(app::verdicts_of(summary, 0, {}, {})[0].name, "SHADOWS_CAPPED");
+  ASSERT_EQ(solve::verdicts_of(summary, 0, {}, {}).size(), 1U);
+  EXPECT_EQ(solve::verdicts_of(summary, 0, {}, {})[0].name, "SHADOWS_CAPPED");
 }
 
 TEST(Verdicts, CallAClothDominatedByHighlightsFromAFifthOfThePixels) {
-  app::PhotographsSummary glossy;
+  solve::PhotographsSummary glossy;
   glossy.outshining = 0.3;
-  EXPECT_THAT(app::verdicts_of(glossy, 0.2, {}, solver::Level::kStandard), IsEmpty());
-  const std::vector<Verdict> verdicts = app::verdicts_of(glossy, 0.21, {}, solver::Level::kStandard);
+  EXPECT_THAT(solve::verdicts_of(glossy, 0.2, {}, solver::Level::kStandard), IsEmpty());
+  const std::vector<Verdict> verdicts = solve::verdicts_of(glossy, 0.21, {}, solver::Level::kStandard);
   ASSERT_EQ(verdicts.size(), 1U);
   EXPECT_EQ(verdicts[0].name, "SPECULAR_DOMINATED");
   EXPECT_THAT(verdicts[0].text, HasSubstr("21 percent"));
@@ -418,11 +417,11 @@ TEST(Verdicts, CallAClothDominatedByHighlightsFromAFifthOfThePixels) {
 
 TEST(Verdicts, RecommendNoLevelThatHasRun) {
   const LeftOutFacts unfit = {{.median = 0.2, .rms = 0.3, .readings = 100}, {}};
-  app::PhotographsSummary glossy;
+  solve::PhotographsSummary glossy;
   glossy.outshining = 1;
   for (const solver::Level level :
        {solver::Level::kStandard, solver::Level::kRobust, solver::Level::kReference}) {
-    const std::vector<Verdict> verdicts = app::verdicts_of(glossy, 0.5, unfit, level);
+    const std::vector<Verdict> verdicts = solve::verdicts_of(glossy, 0.5, unfit, level);
     ASSERT_EQ(verdicts.size(), 2U);
     for (const Verdict& verdict : verdicts) {
       EXPECT_EQ(verdict.remedy.find("--quality robust") != std::string::npos, level < solver::Level::kRobust)
@@ -435,7 +434,7 @@ TEST(Verdicts, SayThatLightsDoNotFitFromATenthAndThreeTimesTheNoise) {
   const auto names = [](double median, std::optional<double> noise) {
     const LeftOutFacts facts = {{.median = median, .noise_median = noise}, {}};
     std::vector<std::string> all;
-    for (const Verdict& verdict : app::verdicts_of({}, 0, facts, solver::Level::kStandard))
+    for (const Verdict& verdict : solve::verdicts_of({}, 0, facts, solver::Level::kStandard))
       all.push_back(verdict.name);
     return all;
   };
@@ -453,9 +452,9 @@ std::string page_of(Json report, const std::vector<report::Figure>& pictures = {
                  {"height", 8},
                  {"albedo_scale", "absolute"},
                  {"pixels", 64}});
-  const Result<app::SolveReportFacts> facts = read_fields<app::SolveReportFacts>(report, "report");
+  const Result<solve::SolveReportFacts> facts = read_fields<solve::SolveReportFacts>(report, "report");
   EXPECT_TRUE(facts) << facts.error().message();
-  return facts ? app::report_page(*facts, pictures) : "";
+  return facts ? solve::report_page(*facts, pictures) : "";
 }
 
 TEST(ReportPage, SaysHowWellLeftOutLightsArePredictedAndWhatThatCannotSee) {

@@ -29,18 +29,18 @@ const Division kDivisions[] = {{2, {}},
                                {7, {.width = 100, .height = 3}},
                                {2, {.width = 1 << 20, .height = 1 << 20}}};
 
-using Solve = std::function<Result<app::SolveReport>(const app::SolveOptions&, const JobContext&)>;
+using Solve = std::function<Result<solve::SolveReport>(const solve::SolveOptions&, const JobContext&)>;
 
 /// Solves by each of some methods, whole and divided in many ways, and compares the maps byte by byte.
 void expect_same_maps(const Workspace& work, const std::vector<std::string>& methods, const Solve& solve) {
   for (const std::string& method : methods) {
     const auto maps_of = [&](const Division& division) {
-      app::SolveOptions options;
+      solve::SolveOptions options;
       options.method = method;
       options.output = work / "maps";
       options.previews = false;
       options.tile = division.tile;
-      const Result<app::SolveReport> report = solve(options, {.threads = division.threads});
+      const Result<solve::SolveReport> report = solve(options, {.threads = division.threads});
       std::vector<std::string> bytes;
       if (!report) {
         ADD_FAILURE() << report.error().message();
@@ -70,8 +70,8 @@ TEST_P(SameMapsOfASession, ForAnyThreadsAndTiles) {
   const Workspace work;
   simulate(scene_named("golden", GetParam()), work / "cloth.weft");
   const auto solve = [&](const auto& options, const auto& context) {
-    return app::solve_session({.folder = work / "cloth.weft", .calibration = {}, .leds = {}}, options,
-                              context);
+    return solve::solve_session({.folder = work / "cloth.weft", .calibration = {}, .leds = {}}, options,
+                                context);
   };
   expect_same_maps(work, {"fast", "robust", "least-squares", "seed"}, solve);
 }
@@ -96,9 +96,9 @@ TEST_P(SameMapsOfPhotographs, ForAnyThreadsAndTiles) {
   sample.type = GetParam().type;
   sample.write(work / "photos");
   const auto solve = [&](const auto& options, const auto& context) {
-    app::PhotoOptions photos;
+    solve::PhotoOptions photos;
     photos.folder = work / "photos";
-    return app::solve_photos(photos, options, context);
+    return solve::solve_photos(photos, options, context);
   };
   // Photographs come to all methods by the same reader.
   expect_same_maps(work, {"fast", "robust"}, solve);

@@ -79,10 +79,10 @@ class ScanWithABody : public testing::Test {
 
   /// All normals and albedos of a solve.
   static std::string solved(const Session& session, const fs::path& folder) {
-    app::SolveOptions options;
+    solve::SolveOptions options;
     options.method = "standard";
     options.output = folder;
-    const Result<app::SolveReport> report = app::solve_session({session.folder, {}, {}}, options, {});
+    const Result<solve::SolveReport> report = solve::solve_session({session.folder, {}, {}}, options, {});
     EXPECT_TRUE(report) << report.error().message();
     return *sha256_of_file(folder / "normal.exr") + *sha256_of_file(folder / "albedo.exr");
   }
@@ -143,9 +143,9 @@ TEST_F(ScanWithABody, WhoseSettingRoundsTheShutterTimeIsSolved) {
   EXPECT_EQ(outcome->session.document["exposure"]["exposure_us"], 16600) << "as the camera names 1/60 s";
   for (const Shot& shot : outcome->session.shots)
     EXPECT_NEAR(shot.exposure_us, 1e6 / 60, 1) << shot.file << ": as the photograph does";
-  app::SessionOptions options;
+  solve::SessionOptions options;
   options.folder = outcome->session.folder;
-  const Result<pipeline::SolvePlan> plan = app::plan_session(options);
+  const Result<solve::SolvePlan> plan = solve::plan_session(options);
   ASSERT_TRUE(plan) << plan.error().message();
   EXPECT_EQ(plan->lit.size(), 3u);
   EXPECT_EQ(plan->repeats.size(), 1u);

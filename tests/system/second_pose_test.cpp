@@ -37,16 +37,16 @@ class SecondPose : public testing::Test {
     simulate(shining(0), level_);
     simulate(shining(20), tilted_);
   }
-  app::SolveReport solved(const fs::path& session, const std::string& method,
-                          const fs::path& second = {}) const {
-    app::SolveOptions options;
+  solve::SolveReport solved(const fs::path& session, const std::string& method,
+                            const fs::path& second = {}) const {
+    solve::SolveOptions options;
     options.method = method;
     options.second_pose = second;
-    const auto report = app::solve_session({.folder = session, .calibration = {}, .leds = {}}, options, {});
+    const auto report = solve::solve_session({.folder = session, .calibration = {}, .leds = {}}, options, {});
     EXPECT_TRUE(report) << report.error().message();
-    return report ? *report : app::SolveReport();
+    return report ? *report : solve::SolveReport();
   }
-  Json lobe_of(const app::SolveReport& report) const {
+  Json lobe_of(const solve::SolveReport& report) const {
     const Result<Json> document = read_json(report.folder / "reflectance.json", "weft.reflectance", 1);
     EXPECT_TRUE(document);
     return document ? *document : Json();
@@ -59,7 +59,7 @@ class SecondPose : public testing::Test {
 TEST_F(SecondPose, ShowsTheLobeThatOnePoseDoesNot) {
   const Json alone = lobe_of(solved(level_, "robust"));
   EXPECT_FALSE(alone["clusters"][0]["observable"].get<bool>()) << alone["clusters"][0].dump();
-  const app::SolveReport report = solved(level_, "robust", tilted_);
+  const solve::SolveReport report = solved(level_, "robust", tilted_);
   const Json both = lobe_of(report);
   ASSERT_TRUE(both["clusters"][0]["observable"].get<bool>()) << both["clusters"][0]["why"];
   EXPECT_TRUE(both["second_pose"].get<bool>());
@@ -76,7 +76,7 @@ TEST_F(SecondPose, IsSolvedInTheClothsOwnPlane) {
   const Result<Session> session = read_session(folder);
   ASSERT_TRUE(session) << session.error().message();
   EXPECT_EQ(session->pose, (ClothPose{20, 0}));
-  const app::SolveReport report = solved(folder, "least-squares");
+  const solve::SolveReport report = solved(folder, "least-squares");
   ASSERT_TRUE(report.facts.error);
   EXPECT_LT(report.facts.error->mean_deg, 0.5);
 }

@@ -196,8 +196,8 @@ TEST_F(Solves, WithoutALedThatTheReportSaidToLeaveOutAreTheCurrentOnes) {
 }
 
 // Ten LEDs, of which two are exchanged, one is dead and one is weak; a person left out the first shot.
-app::PhotographsSummary faulty(int leds) {
-  app::PhotographsSummary summary;
+solve::PhotographsSummary faulty(int leds) {
+  solve::PhotographsSummary summary;
   for (int led = 1; led <= leds; ++led) {
     summary.numbers.push_back(led);
     summary.shot_of_led[led] = led + 1;
@@ -219,12 +219,12 @@ app::PhotographsSummary faulty(int leds) {
 }
 
 TEST(RemediesOfAReport, LeaveShotsOutForGoodWhereThreeLightsStay) {
-  const std::vector<Verdict> verdicts = app::verdicts_of(faulty(10), 0, {}, {});
+  const std::vector<Verdict> verdicts = solve::verdicts_of(faulty(10), 0, {}, {});
   ASSERT_EQ(verdicts.size(), 3U);
   EXPECT_THAT(verdicts[0].remedy, HasSubstr("weft library tag cloth.weft --set left_out=0,3,5"));
   EXPECT_THAT(verdicts[1].remedy, HasSubstr("--set left_out=0,4 "));
   EXPECT_THAT(verdicts[2].remedy, HasSubstr("--set left_out=0,2 "));
-  for (const Verdict& verdict : app::verdicts_of(faulty(4), 0, {}, {})) {
+  for (const Verdict& verdict : solve::verdicts_of(faulty(4), 0, {}, {})) {
     const bool is_of_two = verdict.name == "LEDS_EXCHANGED";
     EXPECT_EQ(verdict.remedy.find("left_out") == std::string::npos, is_of_two) << verdict.remedy;
   }
@@ -234,10 +234,10 @@ TEST(RemediesOfAReport, NameNoLevelThatRan) {
   const LeftOutFacts unfit = {{.median = 0.3, .rms = 0.3, .readings = 100}, {}};
   for (const solver::MethodName& method : solver::method_names()) {
     if (!method.level) continue;
-    app::PhotographsSummary summary = faulty(10);
+    solve::PhotographsSummary summary = faulty(10);
     for (const bool has_faults : {true, false}) {
       if (!has_faults) summary.diagnosis.faults.clear();
-      for (const Verdict& verdict : app::verdicts_of(summary, 0.5, unfit, method.level))
+      for (const Verdict& verdict : solve::verdicts_of(summary, 0.5, unfit, method.level))
         EXPECT_THAT(verdict.remedy, Not(HasSubstr(fmt::format("--quality {}", method.name)))) << verdict.name;
     }
   }

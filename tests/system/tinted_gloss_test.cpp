@@ -35,16 +35,17 @@ simulator::Scene lurex(const Rgb& f0) {
 
 class TintedGloss : public testing::Test {
  protected:
-  app::SolveReport solved(const Rgb& f0) const {
+  solve::SolveReport solved(const Rgb& f0) const {
     simulate(lurex(f0), session_);
-    app::SolveOptions options;
+    solve::SolveOptions options;
     options.method = "robust";
     options.previews = false;
-    const auto report = app::solve_session({.folder = session_, .calibration = {}, .leds = {}}, options, {});
+    const auto report =
+        solve::solve_session({.folder = session_, .calibration = {}, .leds = {}}, options, {});
     EXPECT_TRUE(report) << report.error().message();
-    return report ? *report : app::SolveReport();
+    return report ? *report : solve::SolveReport();
   }
-  static Json cluster_of(const app::SolveReport& report) {
+  static Json cluster_of(const solve::SolveReport& report) {
     const Result<Json> document = read_json(report.folder / "reflectance.json", "weft.reflectance", 1);
     EXPECT_TRUE(document);
     return document ? (*document)["clusters"][0] : Json();
@@ -55,7 +56,7 @@ class TintedGloss : public testing::Test {
 };
 
 TEST_F(TintedGloss, IsMeasuredAndLeavesTheDyeItsColour) {
-  const app::SolveReport report = solved(kGold);
+  const solve::SolveReport report = solved(kGold);
   const Json cluster = cluster_of(report);
   ASSERT_TRUE(cluster.contains("f0_rgb")) << cluster.dump();
   EXPECT_NEAR(cluster["alpha"].get<double>(), 0.3, 0.01);
@@ -76,10 +77,10 @@ TEST_F(TintedGloss, IsMeasuredAndLeavesTheDyeItsColour) {
 
 TEST_F(TintedGloss, IsASpecularColourOfTheMaps) {
   solved(kGold);
-  app::MapsOptions options;
+  material::MapsOptions options;
   options.session = session_;
   options.maps = {"roughness"};
-  const auto made = app::make_maps(options, {});
+  const auto made = material::make_maps(options, {});
   ASSERT_TRUE(made) << made.error().message();
   const Result<LoadedImage> specular = read_image(made->folder / "specular.exr"),
                             tint = read_image(made->folder / "specular_tint.exr");
@@ -94,7 +95,7 @@ TEST_F(TintedGloss, IsASpecularColourOfTheMaps) {
 }
 
 TEST_F(TintedGloss, IsNotSaidOfWhiteHighlightsOnColouredCloth) {
-  const app::SolveReport report = solved({0.05, 0.05, 0.05});
+  const solve::SolveReport report = solved({0.05, 0.05, 0.05});
   const Json cluster = cluster_of(report);
   ASSERT_TRUE(cluster["observable"].get<bool>()) << cluster.dump();
   EXPECT_FALSE(cluster.contains("tint"));

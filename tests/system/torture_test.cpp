@@ -47,12 +47,12 @@ TEST(Torture, HasTheStatusMapThatItsSceneDescribesByEveryMethod) {
     if (method.extent == solver::Extent::kHalfSize) continue;
     SCOPED_TRACE(method.name);
     const fs::path maps = work / method.name;
-    app::SolveOptions options;
+    solve::SolveOptions options;
     options.method = method.name;
     options.output = maps;
     options.previews = false;
-    const Result<app::SolveReport> report =
-        app::solve_session({.folder = work / "torture.weft", .calibration = {}, .leds = {}}, options, {});
+    const Result<solve::SolveReport> report =
+        solve::solve_session({.folder = work / "torture.weft", .calibration = {}, .leds = {}}, options, {});
     ASSERT_TRUE(report) << report.error().message();
     const Image<float> status = map(maps / "status.png"), normal = map(maps / "normal.exr"),
                        truth = map(work / "torture.weft" / "truth" / "normal.exr");

@@ -13,7 +13,7 @@
 #include "core/base/descriptor.h"
 #include "core/base/process.h"
 
-namespace weft::app {
+namespace weft::virtual_rig {
 namespace {
 
 ssize_t read_one(int fd) {
@@ -29,7 +29,7 @@ ssize_t read_one(int fd) {
 
 int run_in_background(const std::vector<std::string>& arguments) {
   std::array<int, 2> ends = {};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return kTryAgainError;
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return app::kTryAgainError;
   const Descriptor ready(ends[0]);
   Descriptor its(ends[1]);
   ProcessStart again = {
@@ -42,8 +42,8 @@ int run_in_background(const std::vector<std::string>& arguments) {
   again.command.insert(again.command.end(), arguments.begin(), arguments.end());
   const Result<pid_t> child = start_process(again);
   its = Descriptor();
-  if (!child) return kTryAgainError;
-  if (read_one(ready.get()) == 1) return kDone;
+  if (!child) return app::kTryAgainError;
+  if (read_one(ready.get()) == 1) return app::kDone;
   int status = 0;
   while (::waitpid(*child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -62,4 +62,4 @@ void detach(int ready) {
   ::close(ready);
 }
 
-}  // namespace weft::app
+}  // namespace weft::virtual_rig

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace weft::app {
+namespace weft::virtual_rig {
 
 /// Runs this program again in a session of its own, with these arguments and `--ready FD`, and returns once
 /// it has called detach() or ended, with an exit code: 0, or its own. It is no plain fork: libraries that
@@ -15,4 +15,4 @@ int run_in_background(const std::vector<std::string>& arguments);
 /// device. `ready` below 0: it is not in the background, and nothing happens.
 void detach(int ready);
 
-}  // namespace weft::app
+}  // namespace weft::virtual_rig

@@ -20,7 +20,7 @@
 #include "virtual_rig/program/background.h"
 #include "virtual_rig/program/run.h"
 
-namespace weft::app {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,7 +32,7 @@ struct Arguments {
   bool background = false, keep = false;
   int ready = -1;
   std::vector<std::string> command;
-  virtual_rig::VirtualRigOptions rig;
+  VirtualRigOptions rig;
 };
 
 void define(CLI::App& app, Arguments& a) {
@@ -89,7 +89,7 @@ void define(CLI::App& app, Arguments& a) {
   app.add_option("--ready", a.ready)->group("");  // run_in_background()
   app.add_option("--inject", a.inject, "send one command to the rig that lives in --folder, and end");
   std::string footer = "Commands for --inject, or a line each on the socket FOLDER/control:\n";
-  for (const auto& [line, does, example] : virtual_rig::virtual_rig_commands())
+  for (const auto& [line, does, example] : virtual_rig_commands())
     footer += fmt::format("  {:<20} {}\n", line, does);
   app.footer(footer +
              "\nA fault of the camera befalls the SHOT that is given, counted from 1, the next one.\n"
@@ -99,7 +99,7 @@ void define(CLI::App& app, Arguments& a) {
 
 int complain(const Error& error) {
   fmt::print(stderr, "weft-virtual-rig: {}\n", error.message());
-  return exit_code_of(error.kind);
+  return app::exit_code_of(error.kind);
 }
 
 int inject(const Arguments& a) {
@@ -107,11 +107,11 @@ int inject(const Arguments& a) {
     return complain({ErrorKind::kUsage, "no rig is named", "--inject", "there may be several",
                      "name its folder with --folder"});
   }
-  const Result<std::string> answer = virtual_rig::send_command(a.folder / "control", a.inject);
+  const Result<std::string> answer = send_command(a.folder / "control", a.inject);
   if (!answer) return complain(answer.error());
   const bool is_refused = answer->starts_with("error");
   fmt::print(is_refused ? stderr : stdout, "{}\n", *answer);
-  return is_refused ? kUsageError : kDone;
+  return is_refused ? app::kUsageError : app::kDone;
 }
 
 /// A new folder of this run alone.
@@ -163,7 +163,7 @@ int main_of(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kDone : kUsageError;
+    return app.exit(e) == 0 ? app::kDone : app::kUsageError;
   }
   std::signal(SIGPIPE, SIG_IGN);
   if (!arguments.inject.empty()) return inject(arguments);
@@ -177,8 +177,8 @@ int main_of(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::virtual_rig
 
 int main(int argc, char** argv) {
-  return weft::app::main_of(argc, argv);
+  return weft::virtual_rig::main_of(argc, argv);
 }

@@ -18,10 +18,8 @@
 #include "virtual_rig/program/background.h"
 #include "virtual_rig/rig_process.h"
 
-namespace weft::app {
+namespace weft::virtual_rig {
 namespace {
-
-using virtual_rig::VirtualRig;
 
 constexpr int kPoll_ms = 100;
 constexpr double kGrace_s = 10;
@@ -72,14 +70,12 @@ Result<std::unique_ptr<ChildProcess>> start_inside(const VirtualRig& rig,
 }
 
 /// VirtualRig::start() that a signal ends.
-Result<std::unique_ptr<VirtualRig>> start_rig(virtual_rig::VirtualRigOptions options,
-                                              const Signals& signals) {
+Result<std::unique_ptr<VirtualRig>> start_rig(VirtualRigOptions options, const Signals& signals) {
   std::stop_source stop;
   options.render.stop = stop.get_token();
   options.render.progress = [last = -1](double share) mutable {
     const int percent = 5 * static_cast<int>(20 * share);
-    if (std::exchange(last, percent) != percent)
-      fmt::print(stderr, "{} {} %\n", virtual_rig::kRenders, percent);
+    if (std::exchange(last, percent) != percent) fmt::print(stderr, "{} {} %\n", kRenders, percent);
   };
   auto starting = std::async(std::launch::async, [&options] { return VirtualRig::start(options); });
   while (starting.wait_for(std::chrono::milliseconds(kPoll_ms)) != std::future_status::ready) {
@@ -110,19 +106,19 @@ Result<int> wait_for_end(const VirtualRig& rig, ChildProcess* child, const Signa
     std::array<pollfd, 2> waiting = {pollfd{signals.descriptor(), POLLIN, 0},
                                      pollfd{rig.end_descriptor(), POLLIN, 0}};
     ::poll(waiting.data(), waiting.size(), kPoll_ms);
-    if (signals.take()) return child != nullptr ? kInterruptedError : kDone;
-    if (waiting[1].revents != 0) return kDone;
+    if (signals.take()) return child != nullptr ? app::kInterruptedError : app::kDone;
+    if (waiting[1].revents != 0) return app::kDone;
     if (child != nullptr) {
       if (const std::optional<int> code = child->wait(0)) return *code;
     }
-    if (parent != kNoParent && ::getppid() != parent) return kDone;
+    if (parent != kNoParent && ::getppid() != parent) return app::kDone;
   }
 }
 
 }  // namespace
 
-Result<int> run_virtual_rig(const virtual_rig::VirtualRigOptions& options,
-                            const std::vector<std::string>& command, int ready) {
+Result<int> run_virtual_rig(const VirtualRigOptions& options, const std::vector<std::string>& command,
+                            int ready) {
   const Signals signals;
   const pid_t parent = ::getppid();
   Result<std::unique_ptr<VirtualRig>> rig = start_rig(options, signals);
@@ -140,4 +136,4 @@ Result<int> run_virtual_rig(const virtual_rig::VirtualRigOptions& options,
   return code;
 }
 
-}  // namespace weft::app
+}  // namespace weft::virtual_rig

@@ -20,9 +20,9 @@
 #include <string_view>
 #include <utility>
 
-#include "app/server/http/request_headers.h"
 #include "app/server/http/error_reply.h"
 #include "app/server/http/path_pattern.h"
+#include "app/server/http/request_headers.h"
 #include "core/base/files.h"
 
 namespace weft::app {

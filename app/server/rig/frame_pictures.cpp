@@ -184,7 +184,7 @@ Result<void> FramePictures::make(const FrameFile& frame) {
 Result<void> FramePictures::make_files(const FrameFile& frame) try {
   const Result<RawFrame> raw = capture::decode_raw(frame.file);
   if (!raw) return raw.error();
-  Image<float> picture = reduced(half_size_picture(*raw, Response{}));
+  Image<float> picture = reduced(capture::half_size_picture(*raw, Response{}));
   balance_to_grey(picture);
   if (Result<void> made = make_writable_folder(folder_); !made) return made;
   const std::vector<View<const float>> planes = {picture.plane(0), picture.plane(1), picture.plane(2)};

@@ -6,7 +6,7 @@
 namespace weft::app {
 
 /// Read once: a calibration never changes.
-Result<KnownFrame> FramingGuide::frame() {
+Result<calibration::KnownFrame> FramingGuide::frame() {
   const std::filesystem::path calibration = capture::calibration_now(rig_);
   if (calibration.empty()) {
     return Error{ErrorKind::kNoInput, "nothing is known of the frame", rig_.name,
@@ -14,7 +14,7 @@ Result<KnownFrame> FramingGuide::frame() {
   }
   const std::lock_guard lock(mutex_);
   if (known_ && calibration_ == calibration) return *known_;
-  Result<KnownFrame> known = known_frame(calibration);
+  Result<calibration::KnownFrame> known = calibration::known_frame(calibration);
   if (!known) return known;
   calibration_ = calibration;
   known_ = *known;
@@ -22,14 +22,15 @@ Result<KnownFrame> FramingGuide::frame() {
 }
 
 Result<Json> FramingGuide::known() {
-  const Result<KnownFrame> known = frame();
+  const Result<calibration::KnownFrame> known = frame();
   return known ? Result<Json>(json_of(*known)) : known.error();
 }
 
-Result<Json> FramingGuide::seen(const std::string& jpeg, const std::optional<PrintedBoard>& board) {
-  const Result<KnownFrame> known = frame();
-  const Result<SeenFrame> seen =
-      seen_frame(jpeg, known ? std::optional(*known) : std::optional<KnownFrame>(), board);
+Result<Json> FramingGuide::seen(const std::string& jpeg,
+                                const std::optional<calibration::PrintedBoard>& board) {
+  const Result<calibration::KnownFrame> known = frame();
+  const Result<calibration::SeenFrame> seen = calibration::seen_frame(
+      jpeg, known ? std::optional(*known) : std::optional<calibration::KnownFrame>(), board);
   return seen ? Result<Json>(json_of(*seen)) : seen.error();
 }
 

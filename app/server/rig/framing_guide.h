@@ -21,15 +21,15 @@ class FramingGuide {
   /// What the rig's calibration knows of the frame. kNoInput where the rig has none; those of known_frame().
   Result<Json> known();
   /// What this picture of the finder shows.
-  Result<Json> seen(const std::string& jpeg, const std::optional<PrintedBoard>& board);
+  Result<Json> seen(const std::string& jpeg, const std::optional<calibration::PrintedBoard>& board);
 
  private:
-  Result<KnownFrame> frame();
+  Result<calibration::KnownFrame> frame();
 
   const capture::Rig& rig_;
   std::mutex mutex_;
   std::filesystem::path calibration_;  ///< of known_
-  std::optional<KnownFrame> known_;
+  std::optional<calibration::KnownFrame> known_;
 };
 
 }  // namespace weft::app

@@ -43,17 +43,17 @@ Result<Json> SetKeeper::begin(const Wish& wish) {
   if (!folder) return std::move(folder).error();
   const std::lock_guard lock(mutex_);
   if (is_busy_) return is_photographing(rig_.name);
-  SetRequest request;
+  calibration::SetRequest request;
   request.folder = std::move(*folder);
   request.part = wish.part;
   request.rig = rig_.name;
   request.from = wish.from.empty() ? capture::calibration_now(rig_) : wish.from;
   request.description = wish.description;
-  Result<PhotographSet> set = begin_set(request);
+  Result<calibration::PhotographSet> set = calibration::begin_set(request);
   if (!set) return std::move(set).error();
   if (Result<void> told = tell_tape(*set); !told) return std::move(told).error();
-  Work work = {*set, SetGuide(*set), {}, {}};
-  Result<SetStanding> standing = work.guide.look(work.set);
+  Work work = {*set, calibration::SetGuide(*set), {}, {}};
+  Result<calibration::SetStanding> standing = work.guide.look(work.set);
   if (!standing) return std::move(standing).error();
   work.standing = std::move(*standing);
   work_ = std::move(work);
@@ -62,9 +62,9 @@ Result<Json> SetKeeper::begin(const Wish& wish) {
 }
 
 /// Where nobody has calibrated the LEDs, calibrate lights begins where the rig file's tape has them.
-Result<void> SetKeeper::tell_tape(const PhotographSet& set) const {
+Result<void> SetKeeper::tell_tape(const calibration::PhotographSet& set) const {
   const std::filesystem::path file = set.folder / "rig.toml";
-  if (set.part != SetPart::kSheet || !rig_.lights || is_there(file)) return {};
+  if (set.part != calibration::SetPart::kSheet || !rig_.lights || is_there(file)) return {};
   const Result<Calibration> before = read_calibration(set.from);
   if (before && before->lights) return {};
   const Result<std::string> text = read_text(rig_.file);
@@ -82,7 +82,7 @@ Result<Json> SetKeeper::photograph(const std::string& by) {
   capture::ScanRequest request;
   request.session = work_->set.folder;
   request.fabric = name_of(work_->set.part);
-  const SetStep step = *work_->standing.next;
+  const calibration::SetStep step = *work_->standing.next;
   const Result<void> begun = keeper_.begin_work(
       std::move(request), by,
       [this, step](const capture::ScanRequest&, capture::Lamps& lamps, capture::Camera& camera,
@@ -97,7 +97,7 @@ Result<Json> SetKeeper::photograph(const std::string& by) {
   return document_locked();
 }
 
-Result<capture::ScanOutcome> SetKeeper::take(const SetStep& step, capture::Lamps& lamps,
+Result<capture::ScanOutcome> SetKeeper::take(const calibration::SetStep& step, capture::Lamps& lamps,
                                              capture::Camera& camera, const capture::ScanEvents& events,
                                              const capture::ScanControl& control) {
   Work* work = nullptr;
@@ -105,9 +105,10 @@ Result<capture::ScanOutcome> SetKeeper::take(const SetStep& step, capture::Lamps
     const std::lock_guard lock(mutex_);
     work = &*work_;
   }
-  const Result<void> taken = take_step(work->set, step, rig_, lamps, camera, events, control);
-  Result<SetStanding> standing = work->guide.look(work->set);
-  if (standing && taken && step.kind == StepKind::kScan) standing = without_useless(*work, step, *standing);
+  const Result<void> taken = calibration::take_step(work->set, step, rig_, lamps, camera, events, control);
+  Result<calibration::SetStanding> standing = work->guide.look(work->set);
+  if (standing && taken && step.kind == calibration::StepKind::kScan)
+    standing = without_useless(*work, step, *standing);
   const std::lock_guard lock(mutex_);
   if (standing) work->standing = std::move(*standing);
   if (!taken) {
@@ -126,12 +127,13 @@ void SetKeeper::on_end() {
 }
 
 /// A step of weft calibrate reads every session of its folder: one that is of no use goes to left_out/.
-Result<SetStanding> SetKeeper::without_useless(Work& work, const SetStep& step, const SetStanding& standing) {
-  const auto scanned = std::ranges::find(standing.photographs, step.name, &SetPhotograph::name);
+Result<calibration::SetStanding> SetKeeper::without_useless(Work& work, const calibration::SetStep& step,
+                                                            const calibration::SetStanding& standing) {
+  const auto scanned = std::ranges::find(standing.photographs, step.name, &calibration::SetPhotograph::name);
   if (scanned == standing.photographs.end() || scanned->is_used) return standing;
   work.set.why[step.name] = scanned->why;
-  if (Result<void> written = write_set(work.set); !written) return written.error();
-  if (Result<void> moved = app::leave_out(work.set, step.name, true); !moved) return moved.error();
+  if (Result<void> written = calibration::write_set(work.set); !written) return written.error();
+  if (Result<void> moved = calibration::leave_out(work.set, step.name, true); !moved) return moved.error();
   return work.guide.look(work.set);
 }
 
@@ -139,8 +141,9 @@ Result<Json> SetKeeper::leave_out(const std::string& name, bool out) {
   const std::lock_guard lock(mutex_);
   if (!work_) return no_set(rig_.name);
   if (is_busy_) return is_photographing(rig_.name);
-  if (Result<void> moved = app::leave_out(work_->set, name, out); !moved) return std::move(moved).error();
-  Result<SetStanding> standing = work_->guide.look(work_->set);
+  if (Result<void> moved = calibration::leave_out(work_->set, name, out); !moved)
+    return std::move(moved).error();
+  Result<calibration::SetStanding> standing = work_->guide.look(work_->set);
   if (!standing) return std::move(standing).error();
   work_->standing = std::move(*standing);
   tell_locked();
@@ -152,14 +155,14 @@ Json SetKeeper::document() const {
   return work_ ? document_locked() : Json();
 }
 
-std::optional<PrintedBoard> SetKeeper::board() const {
+std::optional<calibration::PrintedBoard> SetKeeper::board() const {
   std::filesystem::path file;
   {
     const std::lock_guard lock(mutex_);
-    if (!work_ || work_->set.part != SetPart::kBoard) return std::nullopt;
+    if (!work_ || work_->set.part != calibration::SetPart::kBoard) return std::nullopt;
     file = work_->set.board_file();
   }
-  const Result<PrintedBoard> board = read_board_file(file, {});
+  const Result<calibration::PrintedBoard> board = calibration::read_board_file(file, {});
   return board ? std::optional(*board) : std::nullopt;
 }
 
@@ -169,7 +172,7 @@ void SetKeeper::close() {
 }
 
 Json SetKeeper::document_locked() const {
-  const PhotographSet& set = work_->set;
+  const calibration::PhotographSet& set = work_->set;
   Json document = {{"name", set.folder.filename().string()},
                    {"part", name_of(set.part)},
                    {"folder", set.folder.string()},

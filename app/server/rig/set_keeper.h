@@ -26,7 +26,7 @@ class SetKeeper {
   /// What a client asks for.
   struct Wish {
     std::string name;  ///< of its folder; empty: the part's
-    SetPart part = SetPart::kBoard;
+    calibration::SetPart part = calibration::SetPart::kBoard;
     std::string description;     ///< text of board.toml, sheet.toml, chart.toml
     std::filesystem::path from;  ///< calibration; empty: the rig's
   };
@@ -41,20 +41,22 @@ class SetKeeper {
   /// Null where none is worked on.
   Json document() const;
   /// The board of the set that is worked on, where it is of one.
-  std::optional<PrintedBoard> board() const;
+  std::optional<calibration::PrintedBoard> board() const;
   void close();
 
  private:
   struct Work {
-    PhotographSet set;
-    SetGuide guide;
-    SetStanding standing;
+    calibration::PhotographSet set;
+    calibration::SetGuide guide;
+    calibration::SetStanding standing;
     std::optional<Error> error;  ///< of the last step
   };
-  Result<capture::ScanOutcome> take(const SetStep& step, capture::Lamps& lamps, capture::Camera& camera,
-                                    const capture::ScanEvents& events, const capture::ScanControl& control);
-  static Result<SetStanding> without_useless(Work& work, const SetStep& step, const SetStanding& standing);
-  Result<void> tell_tape(const PhotographSet& set) const;
+  Result<capture::ScanOutcome> take(const calibration::SetStep& step, capture::Lamps& lamps,
+                                    capture::Camera& camera, const capture::ScanEvents& events,
+                                    const capture::ScanControl& control);
+  static Result<calibration::SetStanding> without_useless(Work& work, const calibration::SetStep& step,
+                                                          const calibration::SetStanding& standing);
+  Result<void> tell_tape(const calibration::PhotographSet& set) const;
   void on_end();
   Json document_locked() const;
   void tell_locked() { events_.add("calibration", document_locked()); }

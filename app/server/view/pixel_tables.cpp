@@ -62,7 +62,7 @@ constexpr int kReaders = 2;  // threads: a scan may run beside
 
 Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path& session,
                                                      const SolveFacts& solve, const JobContext& context) {
-  SessionOptions options;
+  solve::SessionOptions options;
   options.folder = session;
   const SolveInput input = solve.input.value_or(SolveInput());
   for (const SolvedShot& shot : input.shots) {
@@ -72,13 +72,13 @@ Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path
   if (options.leds.empty())
     return Error{ErrorKind::kBadData, "the solve has no readings", session.string(),
                  "it was not made from a session", "ask a solve of a session"};
-  Result<SolvePlan> plan = plan_session(options);
+  Result<solve::SolvePlan> plan = solve::plan_session(options);
   if (!plan) return std::move(plan).error();
   if (plan->input.calibration != input.calibration)
     return changed_since(session, "it was solved with another calibration than the session has");
   if (plan->input.shots != input.shots) return changed_since(session, "its shots are others");
 
-  Result<pipeline::Photographs> loaded = load_photographs(*plan, context);
+  Result<solve::Photographs> loaded = solve::load_photographs(*plan, context);
   if (!loaded) return std::move(loaded).error();
   std::unique_ptr<PixelTable> table(new PixelTable);
   table->method_ = solve.method;
@@ -92,9 +92,9 @@ Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path
     moved.push_back(static_cast<std::size_t>(led - leds.begin()));
     table->whole_shots_.push_back({*led, "moved"});
   }
-  if (Result<void> ok = pipeline::leave_out(moved, table->photographs_); !ok) return std::move(ok).error();
+  if (Result<void> ok = solve::leave_out(moved, table->photographs_); !ok) return std::move(ok).error();
   if (table->photographs_.size != solve.size) {
-    Result<pipeline::Photographs> half = pipeline::half_size(table->photographs_, context.threads);
+    Result<solve::Photographs> half = solve::half_size(table->photographs_, context.threads);
     if (!half) return std::move(half).error();
     table->photographs_ = std::move(*half);
   }
@@ -105,7 +105,7 @@ Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path
 Json PixelTable::at(int x, int y) const {
   const int x0 = x / kRowGroup * kRowGroup;
   const Rect around = {x0, y, std::min(x0 + kRowGroup, photographs_.size.width), y + 1};
-  pipeline::TileReader reader(photographs_, {.width = kRowGroup, .height = 1});
+  solve::TileReader reader(photographs_, {.width = kRowGroup, .height = 1});
   const solver::TileInput input = reader.read(around);
   std::vector<solver::PixelRow> rows(input.field->count());
   solver::read_pixel(input, x - x0, 0, rows);
@@ -116,7 +116,7 @@ Json PixelTable::at(int x, int y) const {
   std::vector<solver::ReadingStory> stories(rows.size());
   const solver::PixelSolution solution = solver::PixelSolver(options).explain(rows, stories);
 
-  const pipeline::Mosaics* mosaics = photographs_.mosaics();
+  const solve::Mosaics* mosaics = photographs_.mosaics();
   Json readings = Json::array();
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const solver::ReadingStory& story = stories[k];

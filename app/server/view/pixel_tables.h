@@ -40,7 +40,7 @@ class PixelTable {
  private:
   PixelTable() = default;
 
-  pipeline::Photographs photographs_;
+  solve::Photographs photographs_;
   std::string method_;
   std::vector<UnusedLed> whole_shots_;  // LEDs that were not solved from
 };

@@ -46,15 +46,15 @@ Described described(const char* schema) {
 }
 
 const std::vector<Described>& all_described() {
-  static const std::vector<Described> all = {described<PhotographSet>("weft.set"),
-                                             described<RectifyFacts>("weft.rectified"),
-                                             described<MapSetFacts>("weft.maps"),
-                                             described<ExportFacts>("weft.export"),
+  static const std::vector<Described> all = {described<calibration::PhotographSet>("weft.set"),
+                                             described<material::RectifyFacts>("weft.rectified"),
+                                             described<material::MapSetFacts>("weft.maps"),
+                                             described<exchange::ExportFacts>("weft.export"),
                                              described<SolveFacts>("weft.solve"),
-                                             described<CheckResult>("weft.calibration-check"),
-                                             described<ImportedPhotographs>("weft.photographs"),
-                                             described<ReflectanceFacts>("weft.reflectance"),
-                                             described<SolveReportFacts>("weft.solve-report")};
+                                             described<calibration::CheckResult>("weft.calibration-check"),
+                                             described<library::ImportedPhotographs>("weft.photographs"),
+                                             described<solve::ReflectanceFacts>("weft.reflectance"),
+                                             described<solve::SolveReportFacts>("weft.solve-report")};
   return all;
 }
 

@@ -50,17 +50,19 @@ std::string text_in(const fs::path& file) {
 }
 
 std::vector<WrittenFile> calibration_files() {
-  const auto board = refusal_of([](const fs::path& file) { return read_board_file(file, {}); });
-  const auto chart = refusal_of([](const fs::path& file) { return read_chart_colors(file.parent_path()); });
+  const auto board = refusal_of([](const fs::path& file) { return calibration::read_board_file(file, {}); });
+  const auto chart =
+      refusal_of([](const fs::path& file) { return calibration::read_chart_colors(file.parent_path()); });
   const auto check = refusal_of([](const fs::path& file) {
     EXPECT_TRUE(write_file(file.parent_path() / "session.json", "{}"));
     EXPECT_TRUE(write_file(file.parent_path() / "sheet.toml", kSheet));
-    return calibrate_check({.input = file.parent_path(), .output = file.parent_path() / "out"}, {});
+    return calibration::calibrate_check({.input = file.parent_path(), .output = file.parent_path() / "out"},
+                                        {});
   });
   return {{"board.toml", "square_x = 3", "square_x", "squares_x", board},
           {"sheet.toml", "reflectence = 1\n" + std::string(kSheet), "reflectence", "reflectance",
-           refusal_of(read_sheet_file)},
-          {"scale.toml", "heigth_mm = 1", "heigth_mm", "height_mm", refusal_of(read_scale_file)},
+           refusal_of(calibration::read_sheet_file)},
+          {"scale.toml", "heigth_mm = 1", "heigth_mm", "height_mm", refusal_of(calibration::read_scale_file)},
           {"chart.toml", "editoin = \"2014\"", "editoin", "edition", chart},
           {"check.toml", "[[plane]]\ntilt = 3", "plane 1: tilt", "tilt_deg", check}};
 }
@@ -72,21 +74,21 @@ std::vector<WrittenFile> files_of_rig() {
       {"rig.toml", "[board]\nprot = \"/dev/ttyACM0\"", "[board]: prot", "port",
        refusal_of(capture::read_rig)},
       {"body.toml", "model = \"Z 6\"\n[widgets]\nshuter = \"s\"", "[widgets]: shuter", "shutter", profile},
-      {"import.toml", "fabrik = \"wool\"", "fabrik", "fabric", refusal_of(read_description)}};
+      {"import.toml", "fabrik = \"wool\"", "fabrik", "fabric", refusal_of(library::read_description)}};
 }
 
 std::vector<WrittenFile> files_of_maps() {
   const auto preset = refusal_of(
       [](const fs::path& file) { return exchange::preset_from_toml(text_in(file), file.string()); });
   const auto material = refusal_of([](const fs::path& file) {
-    return parse_material(text_in(file), {.name = file.string(), .file = file});
+    return material::parse_material(text_in(file), {.name = file.string(), .file = file});
   });
   const std::string weft = "schema = \"weft.material/1\"\n";
   return {
       {"preset.toml", "[[file]]\nbit = 8", "file 1: bit", "bits", preset},
       {"recipe.toml", "[[step]]\ndo = \"tile\"\nrepeat = [1, 1]", "step 1: repeat", "repeats",
-       refusal_of(read_recipe)},
-      {"steps.toml", "[[stp]]\ndo = \"tile\"", "stp", "step", refusal_of(read_recipe)},
+       refusal_of(material::read_recipe)},
+      {"steps.toml", "[[stp]]\ndo = \"tile\"", "stp", "step", refusal_of(material::read_recipe)},
       {"cloth.toml", weft + "inherit = \"x\"", "inherit", "inherits", material},
       {"look.toml", weft + "[surface]\nrougness = 1", "[surface] rougness", "roughness", material},
       {"layer.toml", weft + "[[layer]]\nname = \"dust\"\nmsk = 1", "[[layer]] dust: msk", "mask", material}};

@@ -34,44 +34,44 @@ class Batches : public testing::Test {
     server_ = scripted_.started();
     port_ = server_->port();
     ASSERT_TRUE(begin_batch(places(), "night", {"/archive/a.weft"}));
-    batch::Plan plan = batch::sample_plan(3);
-    for (batch::PlannedSolve& planned : plan.solves)
+    library::BatchPlan plan = library::sample_plan(3);
+    for (library::PlannedSolve& planned : plan.solves)
       planned.session = (scripted_.rig.scan.sessions / fs::path(planned.session).filename()).string();
     plan.header.solver_version = kSolverVersion;
-    plan.left_out.push_back({"/archive/torn.weft", batch::Reason::kUnsolvable, "bad_data",
+    plan.left_out.push_back({"/archive/torn.weft", library::SkipReason::kUnsolvable, "bad_data",
                              "session cannot be read: it is torn", 0});
     plan.header.curve = {{1, 0.9}, {2, 0.7}};
     solves_ = plan.solves;
-    ASSERT_TRUE(write_plan(plan_of_batch(places(), "night"), batch::text_of(plan)));
-    const Result<PlanFile> file = open_plan(plan_of_batch(places(), "night"));
+    ASSERT_TRUE(library::write_plan(plan_of_batch(places(), "night"), library::text_of(plan)));
+    const Result<library::PlanFile> file = library::open_plan(plan_of_batch(places(), "night"));
     ASSERT_TRUE(file) << file.error().message();
     fs::create_directories(file->results());
     write_results(*file);
   }
 
-  void write_results(const PlanFile& file) const {
-    batch::Outcome worse;
+  void write_results(const library::PlanFile& file) const {
+    library::TaskOutcome worse;
     worse.plan = file.header.id;
     worse.session = solves_[0].session;
-    worse.state = batch::State::kSolved;
+    worse.state = library::TaskState::kSolved;
     worse.solve = solves_[0].solve;
     worse.folder = (fs::path(solves_[0].session) / "solve" / worse.solve).string();
-    worse.change = batch::MapChange{};
+    worse.change = library::MapChange{};
     worse.change->pixels = 100;
     worse.change->mean_deg = 3.5;
     worse.change->max_deg = 9;
-    worse.change->sigma_deg = batch::BeforeAfter{0.5, 0.9};
+    worse.change->sigma_deg = library::BeforeAfter{0.5, 0.9};
     fs::create_directories(worse.folder);
     ASSERT_TRUE(write_file(fs::path(worse.folder) / kSolveProduct.document, "{}"));
-    batch::Outcome failed;
+    library::TaskOutcome failed;
     failed.plan = file.header.id;
     failed.session = solves_[1].session;
-    failed.state = batch::State::kFailed;
+    failed.state = library::TaskState::kFailed;
     failed.error =
         Error{ErrorKind::kBadData, "frame is truncated", "raw/3.nef", "it ends early", "copy it again"};
-    for (const batch::Outcome& each : {worse, failed})
-      ASSERT_TRUE(
-          add_outcome(file, each.session == solves_[0].session ? solves_[0].task : solves_[1].task, each));
+    for (const library::TaskOutcome& each : {worse, failed})
+      ASSERT_TRUE(library::add_outcome(
+          file, each.session == solves_[0].session ? solves_[0].task : solves_[1].task, each));
   }
 
   fs::path places() const { return scripted_.rig.daemon.state / kBatchFolder; }
@@ -93,7 +93,7 @@ class Batches : public testing::Test {
   ScriptedRig scripted_{"batches"};
   std::unique_ptr<RigServer> server_;
   int port_ = 0;
-  std::vector<batch::PlannedSolve> solves_;
+  std::vector<library::PlannedSolve> solves_;
 };
 
 TEST_F(Batches, AreListedWithWhatTheyCost) {
@@ -171,11 +171,12 @@ TEST_F(Batches, OfAnotherVersionOrDamagedAreSaidToBe) {
 
 TEST_F(Batches, OfAnArchiveAreAnsweredInShort) {
   constexpr int kMany = 10000;
-  batch::Plan plan = batch::sample_plan(kMany);
+  library::BatchPlan plan = library::sample_plan(kMany);
   for (int i = 0; i < kMany; ++i)
-    plan.left_out.push_back({"/archive/there.weft", batch::Reason::kThere, "", "its solve is there", 1});
+    plan.left_out.push_back(
+        {"/archive/there.weft", library::SkipReason::kThere, "", "its solve is there", 1});
   ASSERT_TRUE(begin_batch(places(), "large", {"/archive/a.weft"}));
-  ASSERT_TRUE(write_plan(plan_of_batch(places(), "large"), batch::text_of(plan)));
+  ASSERT_TRUE(library::write_plan(plan_of_batch(places(), "large"), library::text_of(plan)));
   for (const char* path : {"", "/large", "/large/report"}) {
     const auto began = std::chrono::steady_clock::now();
     const Answer answer = get(path);

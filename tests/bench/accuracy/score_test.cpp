@@ -43,8 +43,7 @@ BoundedPatches plain_patch(float bound_deg) {
   frame.white = 1000;
   std::vector<RawFrame> frames;
   frames.push_back(std::move(frame));
-  patch.photographs.frames =
-      pipeline::Mosaics(std::move(frames), std::nullopt, Response{2, 1, {}}, {1000, 100});
+  patch.photographs.frames = solve::Mosaics(std::move(frames), std::nullopt, Response{2, 1, {}}, {1000, 100});
   patch.normal = Image<float>(size, 3);
   patch.albedo = Image<float>(size, 3);
   patch.openness = Image<float>(size);

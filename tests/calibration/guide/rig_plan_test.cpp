@@ -16,7 +16,7 @@
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -253,4 +253,4 @@ TEST(PlannedCloths, AreThoseThatTheSimulatorHas) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::calibration

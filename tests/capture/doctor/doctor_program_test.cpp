@@ -13,7 +13,7 @@
 #include "tests/virtual_rig/ptp/client_process.h"
 #include "tests/virtual_rig/small_scene.h"
 
-namespace weft::app {
+namespace weft::capture {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,4 +64,4 @@ TEST_F(DoctorProgram, FindsTheCameraOfARigOnUsbAndTellsWhenItIsGone) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::capture

@@ -9,7 +9,7 @@
 
 #include "core/rig/calibration.h"
 
-namespace weft::app {
+namespace weft::capture {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,18 +62,18 @@ class Machine {
   }
   std::vector<SetupFinding> examine_outside() const { return examine_rig(rig_, {}, places()); }
   const fs::path& root() const { return root_; }
-  capture::Rig& rig() { return rig_; }
+  Rig& rig() { return rig_; }
 
   // What the devices say when they are opened.
   Result<std::string> board = std::string("weft lights 1.0");
-  Result<capture::CameraFacts> camera = capture::CameraFacts();
+  Result<CameraFacts> camera = CameraFacts();
 
  private:
   SystemPlaces places() const {
     return {root_ / "proc", root_ / "sys", root_ / "dev", {root_ / "etc", root_ / "lib"}};
   }
   fs::path root_;
-  capture::Rig rig_;
+  Rig rig_;
 };
 
 auto faults(const std::string& part, const std::string& says, const std::string& remedy) {
@@ -232,7 +232,7 @@ TEST(Doctor, RefusesTheCalibrationOfAnotherApertureOrNone) {
 
 TEST(Doctor, KnowsACameraByItsNumberHoweverManyZerosItBeginsWith) {
   Machine machine("serial");
-  capture::Rig& rig = machine.rig();
+  Rig& rig = machine.rig();
   rig.scan.sessions = machine.root() / "scans";
   rig.scan.calibration = machine.root() / "calibration";
   Calibration calibration;
@@ -241,14 +241,14 @@ TEST(Doctor, KnowsACameraByItsNumberHoweverManyZerosItBeginsWith) {
   calibration.subject.f_number = rig.scan.f_number;
   ASSERT_TRUE(write_calibration(rig.scan.calibration, calibration));
   rig.camera.serial.clear();
-  EXPECT_EQ(capture::camera_serial(rig), "0006004711");
+  EXPECT_EQ(camera_serial(rig), "0006004711");
   const auto other_camera = Field("says", &SetupFinding::says, HasSubstr("it is of camera 0006004711"));
   rig.camera.serial = "6004711";
   EXPECT_THAT(examine_folders(rig, 1), Not(Contains(other_camera)));
-  EXPECT_EQ(capture::camera_serial(rig), "6004711");
+  EXPECT_EQ(camera_serial(rig), "6004711");
   rig.camera.serial = "6004712";
   EXPECT_THAT(examine_folders(rig, 1), Contains(other_camera));
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::capture

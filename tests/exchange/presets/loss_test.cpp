@@ -76,7 +76,8 @@ TEST(Loss, OfAlbedoIsInReflectanceAndInDecibelsOfItsSamples) {
 
 TEST(Loss, OfFloatsIsNothingAndHasNoDecibels) {
   TestMaps maps({4, 4});
-  for (const MapPlane plane : {MapPlane::kAlbedoR, MapPlane::kAlbedoG, MapPlane::kAlbedoB}) maps.set(plane, 0.3);
+  for (const MapPlane plane : {MapPlane::kAlbedoR, MapPlane::kAlbedoG, MapPlane::kAlbedoB})
+    maps.set(plane, 0.3);
   const PresetFile file = file_of(kLostAlbedo, {.encoding = Encoding::kExr, .bits = 32});
   const Loss loss = measure_loss(file, maps.planes(), {}, maps.samples(file));
   EXPECT_EQ(loss.albedo->mean_abs, 0);

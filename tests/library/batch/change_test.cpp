@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 MapChange turned(double p95_deg) {
@@ -56,4 +56,4 @@ TEST(MapChange, OfNoPixelSaysSo) {
 }
 
 }  // namespace
-}  // namespace weft::batch
+}  // namespace weft::library

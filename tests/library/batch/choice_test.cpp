@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 using Sessions = std::vector<std::vector<LevelOption>>;
@@ -104,4 +104,4 @@ TEST(CheapestWithin, IsTheCheapestThatIsCloseEnough) {
 }
 
 }  // namespace
-}  // namespace weft::batch
+}  // namespace weft::library

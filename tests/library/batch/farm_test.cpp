@@ -6,7 +6,7 @@
 
 #include <numeric>
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 using testing::Contains;
@@ -19,8 +19,8 @@ using testing::StartsWith;
 constexpr std::uint64_t kMB = 1 << 20;
 
 // Tasks that hold so many megabytes each and last ten minutes with two threads.
-Header header_of(const std::vector<std::uint64_t>& megabytes) {
-  Header header;
+BatchHeader header_of(const std::vector<std::uint64_t>& megabytes) {
+  BatchHeader header;
   header.id = "0123456789abcdef";
   header.threads = 2;
   header.sampled = 1;
@@ -29,7 +29,7 @@ Header header_of(const std::vector<std::uint64_t>& megabytes) {
   return header;
 }
 
-std::vector<int> all_of(const Header& header) {
+std::vector<int> all_of(const BatchHeader& header) {
   std::vector<int> tasks(header.tasks.size());
   std::iota(tasks.begin(), tasks.end(), 0);
   return tasks;
@@ -45,7 +45,7 @@ TEST(Farm, ReadsWhatAClusterTakesFromItsConfiguration) {
 }
 
 TEST(Farm, SplitsTasksSoThatNoIndexReachesTheLimit) {
-  const Header header = header_of(std::vector<std::uint64_t>(12, 600));
+  const BatchHeader header = header_of(std::vector<std::uint64_t>(12, 600));
   const std::vector<TaskArray> arrays = arrays_of(header, all_of(header), 2, {5, 10000});
   ASSERT_THAT(arrays, SizeIs(3));
   EXPECT_EQ(indices_of(arrays[0]), "0-4");
@@ -58,7 +58,7 @@ TEST(Farm, SplitsTasksSoThatNoIndexReachesTheLimit) {
 }
 
 TEST(Farm, SendsTasksThatAreAskedForAlone) {
-  const Header header = header_of(std::vector<std::uint64_t>(12, 600));
+  const BatchHeader header = header_of(std::vector<std::uint64_t>(12, 600));
   const std::vector<int> some = {0, 2, 3, 4, 6, 11};
   const std::vector<TaskArray> arrays = arrays_of(header, some, 2, {10, 10000});
   ASSERT_THAT(arrays, SizeIs(2));
@@ -69,7 +69,7 @@ TEST(Farm, SendsTasksThatAreAskedForAlone) {
 }
 
 TEST(Farm, AsksOfLargeSessionsAloneTheMemoryOfLargeSessions) {
-  const Header header = header_of({600, 4200, 600, 4300});
+  const BatchHeader header = header_of({600, 4200, 600, 4300});
   const std::vector<TaskArray> arrays = arrays_of(header, all_of(header), 2, {});
   ASSERT_THAT(arrays, SizeIs(2));
   EXPECT_THAT(arrays[0].tasks, ElementsAre(0, 2));
@@ -87,7 +87,7 @@ TEST(Farm, GivesATaskTwiceItsTimeByTheCoresThatItHas) {
 }
 
 TEST(Farm, AsksForTheMinutesOfTheLongestTaskOfAnArray) {
-  Header header = header_of({600, 600, 600});
+  BatchHeader header = header_of({600, 600, 600});
   header.tasks[1].seconds = 1200;
   const std::vector<TaskArray> arrays = arrays_of(header, all_of(header), 2, {});
   ASSERT_THAT(arrays, SizeIs(1));
@@ -95,7 +95,7 @@ TEST(Farm, AsksForTheMinutesOfTheLongestTaskOfAnArray) {
 }
 
 TEST(Farm, SubmitsAnArrayThatIsSignalledQueuedAgainAndFound) {
-  const Header header = header_of({600, 600, 600});
+  const BatchHeader header = header_of({600, 600, 600});
   const std::vector<TaskArray> arrays = arrays_of(header, all_of(header), 1, {});
   ASSERT_THAT(arrays, SizeIs(1));
   const FarmPlaces places = {"/usr/bin/weft", "/n/a night.jsonl", "/n/50% of it.results"};
@@ -136,8 +136,8 @@ TEST(Farm, FindsTheNumberOfAJob) {
 
 TEST(Farm, KnowsWhatIsQueuedOfABatch) {
   // As squeue 22.05 prints it.
-  const Header header = header_of(std::vector<std::uint64_t>(12, 600));
-  const Queue queue = queue_from(
+  const BatchHeader header = header_of(std::vector<std::uint64_t>(12, 600));
+  const FarmQueue queue = queue_from(
       "1|1|PENDING|weft-0123456789abcdef|tasks from 5|BeginTime\n"
       "1|2|RUNNING|weft-0123456789abcdef|tasks from 5|None\n"
       "3|0|RUNNING|weft-0123456789abcdef|tasks from 0|None\n"
@@ -176,4 +176,4 @@ TEST(Farm, QuotesWordsForAShell) {
 }
 
 }  // namespace
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -8,20 +8,20 @@
 #include <string>
 #include <vector>
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
-Traits cloth(const std::string& fabric, double megapixels = 16, int frames = 11,
-             const std::string& before = "") {
+SessionTraits cloth(const std::string& fabric, double megapixels = 16, int frames = 11,
+                    const std::string& before = "") {
   return {fabric, "c0ffee", before, megapixels, frames};
 }
 
-Measured measured(std::size_t session, double seconds, double degrees) {
+MeasuredSession measured(std::size_t session, double seconds, double degrees) {
   return {session, {{seconds, 0, degrees, 0, false, {}}}};
 }
 
 TEST(Sample, HasAsManyOfEachClassAsOfAnother) {
-  std::vector<Traits> sessions(90, cloth("twill"));
+  std::vector<SessionTraits> sessions(90, cloth("twill"));
   sessions.resize(95, cloth("satin"));
   sessions.resize(100, cloth("satin", 36));
   const std::vector<std::size_t> sample = choose_sample(sessions, 12);
@@ -34,15 +34,17 @@ TEST(Sample, HasAsManyOfEachClassAsOfAnother) {
 }
 
 TEST(Sample, IsAllWhereThereAreNoMore) {
-  const std::vector<Traits> sessions(7, cloth("twill"));
+  const std::vector<SessionTraits> sessions(7, cloth("twill"));
   EXPECT_THAT(choose_sample(sessions, 50), testing::ElementsAre(0, 1, 2, 3, 4, 5, 6));
   EXPECT_THAT(choose_sample({}, 50), testing::IsEmpty());
   EXPECT_THAT(choose_sample(sessions, 0), testing::IsEmpty());
 }
 
 TEST(Forecast, IsThatOfTheOwnClassWithItsSpread) {
-  const std::vector<Traits> sessions = {cloth("twill"), cloth("twill"), cloth("twill"), cloth("satin")};
-  const std::vector<Measured> sample = {measured(0, 10, 0.6), measured(1, 14, 0.8), measured(3, 100, 3)};
+  const std::vector<SessionTraits> sessions = {cloth("twill"), cloth("twill"), cloth("twill"),
+                                               cloth("satin")};
+  const std::vector<MeasuredSession> sample = {measured(0, 10, 0.6), measured(1, 14, 0.8),
+                                               measured(3, 100, 3)};
   const auto forecasts = carry_over(sessions, sample);
   ASSERT_EQ(forecasts.size(), 4U);
   EXPECT_NEAR(forecasts[2][0].seconds, 12, 1e-9);
@@ -55,8 +57,8 @@ TEST(Forecast, IsThatOfTheOwnClassWithItsSpread) {
 }
 
 TEST(Forecast, CarriesTheShareOfTheClothThatIsSolved) {
-  const std::vector<Traits> sessions(3, cloth("twill"));
-  std::vector<Measured> sample = {measured(0, 10, 0.6), measured(1, 14, 0.2)};
+  const std::vector<SessionTraits> sessions(3, cloth("twill"));
+  std::vector<MeasuredSession> sample = {measured(0, 10, 0.6), measured(1, 14, 0.2)};
   sample[1].levels[0].solved = 0.1;
   sample[1].levels[0].solve_seconds = 12;
   const auto forecasts = carry_over(sessions, sample);
@@ -66,18 +68,18 @@ TEST(Forecast, CarriesTheShareOfTheClothThatIsSolved) {
 }
 
 TEST(Forecast, GoesByPixelsAndFramesWhereNoSizeIsAlike) {
-  const std::vector<Traits> sessions = {cloth("twill", 16, 11), cloth("silk", 32, 22)};
-  const std::vector<Measured> sample = {measured(0, 10, 0.6)};
+  const std::vector<SessionTraits> sessions = {cloth("twill", 16, 11), cloth("silk", 32, 22)};
+  const std::vector<MeasuredSession> sample = {measured(0, 10, 0.6)};
   const auto forecasts = carry_over(sessions, sample);
   EXPECT_NEAR(forecasts[1][0].seconds, 40, 1e-9);
   EXPECT_NEAR(forecasts[1][0].degrees, 0.6, 1e-9);
 }
 
 TEST(Forecast, CarriesTurnsOnlyToSessionsSolvedAlikeSoFar) {
-  const std::vector<Traits> sessions = {cloth("twill", 16, 11, "fast 8"), cloth("twill", 16, 11, "fast 8"),
-                                        cloth("satin", 16, 11, "fast 8"), cloth("twill", 16, 11, "fast 9"),
-                                        cloth("twill")};
-  std::vector<Measured> sample = {measured(0, 10, 0.6)};
+  const std::vector<SessionTraits> sessions = {
+      cloth("twill", 16, 11, "fast 8"), cloth("twill", 16, 11, "fast 8"), cloth("satin", 16, 11, "fast 8"),
+      cloth("twill", 16, 11, "fast 9"), cloth("twill")};
+  std::vector<MeasuredSession> sample = {measured(0, 10, 0.6)};
   sample[0].levels[0].turn_deg = 0.3;
   const auto forecasts = carry_over(sessions, sample);
   EXPECT_EQ(forecasts[1][0].turn_deg, 0.3);
@@ -87,9 +89,9 @@ TEST(Forecast, CarriesTurnsOnlyToSessionsSolvedAlikeSoFar) {
 }
 
 TEST(Forecast, IsNoneWhereNothingWasMeasured) {
-  const std::vector<Traits> sessions = {cloth("twill")};
+  const std::vector<SessionTraits> sessions = {cloth("twill")};
   EXPECT_TRUE(carry_over(sessions, {}).empty());
 }
 
 }  // namespace
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -6,14 +6,14 @@
 
 #include <string>
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
-Outcome solved(const std::string& session) {
-  Outcome outcome;
+TaskOutcome solved(const std::string& session) {
+  TaskOutcome outcome;
   outcome.plan = "p1";
   outcome.session = session;
-  outcome.state = State::kSolved;
+  outcome.state = TaskState::kSolved;
   outcome.solve = "0123";
   outcome.folder = session + "/solve/0123";
   outcome.seconds = 5.25;
@@ -40,8 +40,8 @@ Outcome solved(const std::string& session) {
   return outcome;
 }
 
-Outcome ended(const std::string& session, State state, ErrorKind kind) {
-  Outcome outcome;
+TaskOutcome ended(const std::string& session, TaskState state, ErrorKind kind) {
+  TaskOutcome outcome;
   outcome.plan = "p1";
   outcome.session = session;
   outcome.state = state;
@@ -49,16 +49,17 @@ Outcome ended(const std::string& session, State state, ErrorKind kind) {
   return outcome;
 }
 
-TEST(Outcome, IsReadAsItWasWritten) {
-  for (const Outcome& outcome : {solved("/a.weft"), ended("/b.weft", State::kFailed, ErrorKind::kBadData),
-                                 ended("/c.weft", State::kLost, ErrorKind::kTryAgain)}) {
+TEST(TaskOutcome, IsReadAsItWasWritten) {
+  for (const TaskOutcome& outcome :
+       {solved("/a.weft"), ended("/b.weft", TaskState::kFailed, ErrorKind::kBadData),
+        ended("/c.weft", TaskState::kLost, ErrorKind::kTryAgain)}) {
     const std::string line = line_of(outcome);
     EXPECT_EQ(line.find('\n'), line.size() - 1);
-    const std::optional<Outcome> read = outcome_from_line(line);
+    const std::optional<TaskOutcome> read = outcome_from_line(line);
     ASSERT_TRUE(read) << line;
     EXPECT_EQ(*read, outcome) << line_of(*read);
   }
-  const Outcome wrote = solved("/a.weft"), read = *outcome_from_line(line_of(wrote));
+  const TaskOutcome wrote = solved("/a.weft"), read = *outcome_from_line(line_of(wrote));
   EXPECT_EQ(read.change, wrote.change);
   EXPECT_EQ(read.sigma_p95_deg, wrote.sigma_p95_deg);
   EXPECT_EQ(read.expected_deg, wrote.expected_deg);
@@ -69,30 +70,30 @@ TEST(Outcome, IsReadAsItWasWritten) {
   EXPECT_EQ(read.made, wrote.made);
 }
 
-TEST(Outcome, CutShortAtAnyByteIsNone) {
+TEST(TaskOutcome, CutShortAtAnyByteIsNone) {
   const std::string line = line_of(solved("/a.weft"));
   for (std::size_t bytes = 0; bytes + 2 < line.size(); ++bytes)
     EXPECT_FALSE(outcome_from_line(line.substr(0, bytes))) << bytes;
 }
 
 TEST(Histories, TakeTheLastResultAndPassOverWhatIsNone) {
-  const std::string lines = line_of(ended("/a.weft", State::kLost, ErrorKind::kTryAgain)) +
+  const std::string lines = line_of(ended("/a.weft", TaskState::kLost, ErrorKind::kTryAgain)) +
                             line_of(solved("/a.weft")).substr(0, 40) + "\n" + line_of(solved("/a.weft")) +
-                            line_of(ended("/b.weft", State::kFailed, ErrorKind::kBadData)) +
-                            line_of(ended("/b.weft", State::kLost, ErrorKind::kTryAgain));
-  std::map<std::string, History> histories;
+                            line_of(ended("/b.weft", TaskState::kFailed, ErrorKind::kBadData)) +
+                            line_of(ended("/b.weft", TaskState::kLost, ErrorKind::kTryAgain));
+  std::map<std::string, TaskHistory> histories;
   add_histories(lines, "p1", histories);
   ASSERT_EQ(histories.size(), 2U);
-  const History &a = histories.at("/a.weft"), &b = histories.at("/b.weft");
+  const TaskHistory &a = histories.at("/a.weft"), &b = histories.at("/b.weft");
   EXPECT_TRUE(a.result && a.result->is_done());
   EXPECT_FALSE(a.lost);
   EXPECT_EQ(a.attempts, 2);
-  EXPECT_EQ(b.result->state, State::kFailed) << "what is no result takes none back";
+  EXPECT_EQ(b.result->state, TaskState::kFailed) << "what is no result takes none back";
   EXPECT_TRUE(b.lost);
 }
 
 TEST(Histories, PassOverTheLinesOfAnotherPlan) {
-  std::map<std::string, History> histories;
+  std::map<std::string, TaskHistory> histories;
   add_histories(line_of(solved("/a.weft")), "p2", histories);
   EXPECT_TRUE(histories.empty());
 }
@@ -106,4 +107,4 @@ TEST(Failures, AreOfTheSessionAndNotOfTheHour) {
 }
 
 }  // namespace
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -9,11 +9,11 @@
 
 #include "tests/library/batch/sample_plan.h"
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
-TEST(Plan, IsReadAsItWasWritten) {
-  Plan plan = sample_plan(5);
+TEST(BatchPlan, IsReadAsItWasWritten) {
+  BatchPlan plan = sample_plan(5);
   plan.header.product = {{"normal", "albedo"}, true, "zip", {}};
   plan.header.calibrations = {{"/rig/new", "beef", "rig a"}};
   plan.header.curve = {{0.5, 2.5}, {1.0, 0.7}};
@@ -22,17 +22,17 @@ TEST(Plan, IsReadAsItWasWritten) {
   plan.solves[2].forecast.solved = 0.9;
   plan.solves[2].forecast.solve_seconds = 80;
   plan.header.levels[0].solved = 0.95;
-  plan.left_out = {{"/archive/a.weft", Reason::kUnsolvable, "bad_data", "it is \"odd\"\nand long", 0},
-                   {"/archive/b.weft", Reason::kTurnsLittle, "", "", 12.5}};
+  plan.left_out = {{"/archive/a.weft", SkipReason::kUnsolvable, "bad_data", "it is \"odd\"\nand long", 0},
+                   {"/archive/b.weft", SkipReason::kTurnsLittle, "", "", 12.5}};
   const std::string text = text_of(plan);
-  const Result<Plan> read = plan_from_text(text, "plan");
+  const Result<BatchPlan> read = plan_from_text(text, "plan");
   ASSERT_TRUE(read) << read.error().message();
   EXPECT_EQ(*read, plan);
   EXPECT_EQ(read->header.id.size(), 16U);
   EXPECT_EQ(read->header.left_out, 2);
 }
 
-TEST(Plan, WeighsTheErrorOfEachClothByTheShareThatItHoldsFor) {
+TEST(BatchPlan, WeighsTheErrorOfEachClothByTheShareThatItHoldsFor) {
   std::vector<PlannedSolve> solves = {sample_solve(0), sample_solve(1)};
   solves[0].forecast.degrees = 0.8;
   solves[1].forecast.degrees = 0.25;
@@ -42,7 +42,7 @@ TEST(Plan, WeighsTheErrorOfEachClothByTheShareThatItHoldsFor) {
   EXPECT_EQ(error_of({}).degrees(), 0);
 }
 
-TEST(Plan, HasATaskOfAboutSoManySeconds) {
+TEST(BatchPlan, HasATaskOfAboutSoManySeconds) {
   std::vector<PlannedSolve> solves = {sample_solve(0, 100), sample_solve(1, 149), sample_solve(2, 2),
                                       sample_solve(3, 900), sample_solve(4, 250)};
   share_out(solves, 250);
@@ -51,7 +51,7 @@ TEST(Plan, HasATaskOfAboutSoManySeconds) {
   EXPECT_THAT(tasks, testing::ElementsAre(0, 0, 1, 2, 3));
 }
 
-TEST(Plan, WhoseSecondsAreNotKnownHasTasksOfAHundredSessions) {
+TEST(BatchPlan, WhoseSecondsAreNotKnownHasTasksOfAHundredSessions) {
   std::vector<PlannedSolve> solves;
   for (int i = 0; i < 250; ++i) solves.push_back(sample_solve(i, 0));
   share_out(solves, 600);
@@ -60,8 +60,8 @@ TEST(Plan, WhoseSecondsAreNotKnownHasTasksOfAHundredSessions) {
   EXPECT_EQ(solves.back().task, 2);
 }
 
-TEST(Plan, SaysWhereTheLinesOfEachTaskLie) {
-  Plan plan = sample_plan(7);
+TEST(BatchPlan, SaysWhereTheLinesOfEachTaskLie) {
+  BatchPlan plan = sample_plan(7);
   const std::string text = text_of(plan);
   const std::size_t lines_at = text.find('\n') + 1;
   ASSERT_EQ(plan.header.tasks.size(), 4U);
@@ -80,14 +80,14 @@ TEST(Plan, SaysWhereTheLinesOfEachTaskLie) {
   EXPECT_EQ(number, 7);
 }
 
-TEST(Plan, ThatWasChangedIsRefused) {
-  Plan plan = sample_plan(3);
+TEST(BatchPlan, ThatWasChangedIsRefused) {
+  BatchPlan plan = sample_plan(3);
   const std::string text = text_of(plan);
   std::string changed = text;
   changed[text.find("cloth-2")] = 'k';
   std::string shorter = text.substr(0, text.rfind('\n', text.size() - 2) + 1);
   for (const std::string& each : {changed, shorter}) {
-    const Result<Plan> read = plan_from_text(each, "night.jsonl");
+    const Result<BatchPlan> read = plan_from_text(each, "night.jsonl");
     ASSERT_FALSE(read);
     EXPECT_EQ(read.error().kind, ErrorKind::kBadData);
     EXPECT_THAT(read.error().message(),
@@ -95,19 +95,19 @@ TEST(Plan, ThatWasChangedIsRefused) {
   }
 }
 
-TEST(Plan, OfAnotherVersionIsRefusedByName) {
-  Plan plan = sample_plan(1);
+TEST(BatchPlan, OfAnotherVersionIsRefusedByName) {
+  BatchPlan plan = sample_plan(1);
   std::string text = text_of(plan);
   text.replace(text.find("weft.batch/1"), 12, "weft.batch/2");
-  const Result<Header> header = header_from_line(text.substr(0, text.find('\n')), "plan");
+  const Result<BatchHeader> header = header_from_line(text.substr(0, text.find('\n')), "plan");
   ASSERT_FALSE(header);
   EXPECT_EQ(header.error().kind, ErrorKind::kBadData);
   EXPECT_THAT(header.error().message(),
               testing::HasSubstr("its schema is \"weft.batch/2\"; this program reads weft.batch/1"));
 }
 
-TEST(Plan, ThatIsNoneIsRefusedWhateverItIs) {
-  Plan plan = sample_plan(2);
+TEST(BatchPlan, ThatIsNoneIsRefusedWhateverItIs) {
+  BatchPlan plan = sample_plan(2);
   const std::string text = text_of(plan);
   const std::string line = text.substr(0, text.find('\n'));
   for (const std::string& bad :
@@ -127,8 +127,8 @@ TEST(Plan, ThatIsNoneIsRefusedWhateverItIs) {
   }
 }
 
-TEST(Plan, OfTenThousandTasksHasAHeaderOfLessThanAMegabyte) {
-  Plan plan = sample_plan(0);
+TEST(BatchPlan, OfTenThousandTasksHasAHeaderOfLessThanAMegabyte) {
+  BatchPlan plan = sample_plan(0);
   for (int i = 0; i < 10'000; ++i) plan.solves.push_back(sample_solve(i, 600));
   share_out(plan.solves, 600);
   const std::string text = text_of(plan);
@@ -159,7 +159,7 @@ TEST(SessionDigest, DependsOnWhatASolveDependsOn) {
 }
 
 TEST(SolveParent, IsInTheSessionOrMirrorsTheArchive) {
-  Header header;
+  BatchHeader header;
   header.archive = "/archive";
   EXPECT_EQ(solve_parent(header, "/archive/2025/a.weft"), "/archive/2025/a.weft/solve");
   header.output = "/results";
@@ -170,4 +170,4 @@ TEST(SolveParent, IsInTheSessionOrMirrorsTheArchive) {
 }
 
 }  // namespace
-}  // namespace weft::batch
+}  // namespace weft::library

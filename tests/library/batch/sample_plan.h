@@ -7,7 +7,7 @@
 
 #include "library/batch/plan.h"
 
-namespace weft::batch {
+namespace weft::library {
 
 /// A session of a plan, told from others by its number.
 inline PlannedSolve sample_solve(int number, double seconds = 100) {
@@ -28,8 +28,8 @@ inline PlannedSolve sample_solve(int number, double seconds = 100) {
 }
 
 /// A plan of so many sessions, of tasks of 250 seconds.
-inline Plan sample_plan(int sessions) {
-  Plan plan;
+inline BatchPlan sample_plan(int sessions) {
+  BatchPlan plan;
   plan.header.archive = "/archive";
   plan.header.solver_version = 9;
   plan.header.threads = 2;
@@ -39,4 +39,4 @@ inline Plan sample_plan(int sessions) {
   return plan;
 }
 
-}  // namespace weft::batch
+}  // namespace weft::library

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 using testing::ElementsAre;
@@ -39,4 +39,4 @@ TEST(SessionList, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace weft::batch
+}  // namespace weft::library

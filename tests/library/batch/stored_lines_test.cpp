@@ -11,7 +11,7 @@
 #include "library/batch/plan.h"
 #include "tests/core/places.h"
 
-namespace weft::batch {
+namespace weft::library {
 namespace {
 
 const std::filesystem::path kSchemas = source_folder() / "testdata/schemas";
@@ -25,26 +25,26 @@ std::string stored(const std::string& file) {
 TEST(StoredLines, OfAPlanAreRead) {
   for (const std::string version : {"1", "1.1"}) {
     const std::string text = stored("weft.batch-" + version + "/night.jsonl");
-    const Result<Plan> plan = plan_from_text(text, "night.jsonl");
+    const Result<BatchPlan> plan = plan_from_text(text, "night.jsonl");
     ASSERT_TRUE(plan) << version << ": " << plan.error().message();
     ASSERT_EQ(plan->solves.size(), 1U);
     EXPECT_EQ(plan->solves[0].session, "/archive/twill.weft");
     EXPECT_EQ(plan->header.tasks.size(), 1U);
     EXPECT_EQ(plan->solves[0].forecast.solved, version == "1" ? 1 : 0.9375);
-    Plan again = *plan;
+    BatchPlan again = *plan;
     EXPECT_EQ(text_of(again), text) << version;
   }
 }
 
 TEST(StoredLines, OfSessionsThatAPlanLeavesOutAreRead) {
   const std::string text = stored("weft.batch-1.1-left-out/night.jsonl");
-  const Result<Plan> plan = plan_from_text(text, "night.jsonl");
+  const Result<BatchPlan> plan = plan_from_text(text, "night.jsonl");
   ASSERT_TRUE(plan) << plan.error().message();
   ASSERT_EQ(plan->left_out.size(), 2U);
-  EXPECT_EQ(plan->left_out[0].reason, Reason::kTurnsLittle);
+  EXPECT_EQ(plan->left_out[0].reason, SkipReason::kTurnsLittle);
   EXPECT_EQ(plan->left_out[0].seconds, 1.5);
   EXPECT_EQ(plan->left_out[1].kind, "bad_data");
-  Plan again = *plan;
+  BatchPlan again = *plan;
   EXPECT_EQ(text_of(again), text);
 }
 
@@ -52,7 +52,7 @@ TEST(StoredLines, OfAPlanOfANewerMajorVersionAreRefused) {
   std::string text = stored("weft.batch-1/night.jsonl");
   const std::string schema = "weft.batch/1";
   text.replace(text.find(schema), schema.size(), "weft.batch/2");
-  const Result<Plan> plan = plan_from_text(text, "night.jsonl");
+  const Result<BatchPlan> plan = plan_from_text(text, "night.jsonl");
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().kind, ErrorKind::kBadData);
   EXPECT_THAT(plan.error().message(), testing::HasSubstr("weft.batch/2"));
@@ -61,12 +61,13 @@ TEST(StoredLines, OfAPlanOfANewerMajorVersionAreRefused) {
 TEST(StoredLines, OfResultsAreRead) {
   for (const std::string version : {"1", "1.1"}) {
     const std::string text = stored("weft.batch-result-" + version + "/task-0.jsonl");
-    const Result<Plan> plan = plan_from_text(stored("weft.batch-" + version + "/night.jsonl"), "night.jsonl");
+    const Result<BatchPlan> plan =
+        plan_from_text(stored("weft.batch-" + version + "/night.jsonl"), "night.jsonl");
     ASSERT_TRUE(plan) << plan.error().message();
-    std::map<std::string, History> histories;
+    std::map<std::string, TaskHistory> histories;
     add_histories(text, plan->header.id, histories);
     ASSERT_EQ(histories.size(), 1U);
-    const History& history = histories.begin()->second;
+    const TaskHistory& history = histories.begin()->second;
     ASSERT_TRUE(history.result);
     EXPECT_EQ(history.result->solve, plan->solves[0].solve);
     EXPECT_EQ(history.result->solved.has_value(), version == "1.1");
@@ -76,4 +77,4 @@ TEST(StoredLines, OfResultsAreRead) {
 }
 
 }  // namespace
-}  // namespace weft::batch
+}  // namespace weft::library

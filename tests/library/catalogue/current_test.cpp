@@ -62,8 +62,8 @@ class CurrentSolve : public testing::Test {
                         fs::file_time_type::clock::now() + std::chrono::minutes(++solved_ - 100));
   }
   Json shots() const { return read_session(folder_)->document["shots"]; }
-  SessionSolves solves() const { return solves_of(*read_session(folder_)); }
-  std::string current() const { return current_solve(*read_session(folder_)); }
+  solve::SessionSolves solves() const { return solve::solves_of(*read_session(folder_)); }
+  std::string current() const { return solve::current_solve(*read_session(folder_)); }
   void set(const Json& fields) const {
     const Result<MetadataChange> changed = change_metadata(folder_, fields);
     ASSERT_TRUE(changed) << changed.error().message();
@@ -90,7 +90,7 @@ TEST_F(CurrentSolve, OrdersLevelsAsTheSolverDoesWithMethodsAboveThePreviewAlone)
   for (const solver::MethodName& method : solver::method_names()) {
     if (method.level) levels.emplace_back(method.name);
   }
-  EXPECT_TRUE(std::ranges::equal(levels, kLevels));
+  EXPECT_TRUE(std::ranges::equal(levels, solve::kLevels));
   for (std::size_t i = levels.size(); i-- > 0;)
     solve("000000000000000" + std::to_string(i), std::string(levels[i]), shots());
   solve(kA, "lts", shots());
@@ -108,18 +108,18 @@ TEST_F(CurrentSolve, IsNoneOfAPhotographThatWasTakenAgain) {
   again.push_back(shot(4, 2));
   put(again);
   EXPECT_THAT(solves().all[0].outdated, HasSubstr("LED 2 was photographed again"));
-  const Result<ChoosableSolve> none = solve_for_maps(solves(), "", false);
+  const Result<solve::ChoosableSolve> none = solve::solve_for_maps(solves(), "", false);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, ErrorKind::kNoInput);
   EXPECT_THAT(none.error().remedy, HasSubstr("--quality reference"));
-  EXPECT_TRUE(solve_for_maps(solves(), kA, false)) << "a person who names it gets it";
+  EXPECT_TRUE(solve::solve_for_maps(solves(), kA, false)) << "a person who names it gets it";
   Json now = again;
   now.erase(1);
   solve(kB, "fast", now);
   EXPECT_EQ(current(), kB) << "any level of today's photographs before the best of others";
-  EXPECT_THAT(why_stale(solves(), kA),
+  EXPECT_THAT(solve::why_stale(solves(), kA),
               ElementsAre(HasSubstr("LED 2"), HasSubstr("the fast solve bbbbbbbbbbbbbbbb")));
-  EXPECT_THAT(why_stale(solves(), kB), IsEmpty());
+  EXPECT_THAT(solve::why_stale(solves(), kB), IsEmpty());
 }
 
 TEST_F(CurrentSolve, FollowsWhatAPersonLeavesOutAndTakesIn) {
@@ -169,7 +169,7 @@ TEST_F(CurrentSolve, ThatAPersonChoseStandsUntilPhotographsChange) {
   solve(kB, "robust", all);
   EXPECT_EQ(current(), kA) << "a better one does not take its place by itself";
   EXPECT_TRUE(solves().is_chosen);
-  EXPECT_THAT(why_stale(solves(), kA), ElementsAre(HasSubstr("robust solve bbbbbbbbbbbbbbbb")));
+  EXPECT_THAT(solve::why_stale(solves(), kA), ElementsAre(HasSubstr("robust solve bbbbbbbbbbbbbbbb")));
   set({{"notes", "for the coat"}});
   EXPECT_EQ(current(), kA) << "what is said of a cloth is no photograph";
   set({{"left_out", {2}}});
@@ -209,7 +209,7 @@ TEST_F(CurrentSolve, OfABatchWaitsUntilItIsAccepted) {
 
 TEST_F(CurrentSolve, ThatIsAPreviewFeedsNothingUnlessItIsAskedFor) {
   const auto refused = [&](const std::string& id) {
-    const Result<ChoosableSolve> solve = solve_for_maps(solves(), id, false);
+    const Result<solve::ChoosableSolve> solve = solve::solve_for_maps(solves(), id, false);
     EXPECT_FALSE(solve);
     return solve ? Error() : solve.error();
   };
@@ -218,11 +218,12 @@ TEST_F(CurrentSolve, ThatIsAPreviewFeedsNothingUnlessItIsAskedFor) {
   EXPECT_EQ(refused("").kind, ErrorKind::kNoInput);
   EXPECT_THAT(refused("").remedy, HasSubstr("weft solve " + folder_.string() + " --quality standard"));
   EXPECT_EQ(refused(kA).kind, ErrorKind::kUsage);
-  EXPECT_TRUE(solve_for_maps(solves(), "", true));
-  EXPECT_TRUE(solve_for_maps(solves(), kA, true));
+  EXPECT_TRUE(solve::solve_for_maps(solves(), "", true));
+  EXPECT_TRUE(solve::solve_for_maps(solves(), kA, true));
   EXPECT_THAT(refused(kC).what, HasSubstr("no complete solve"));
   solve(kB, "standard", shots());
-  EXPECT_EQ(solve_for_maps(solves(), "", true)->id, kB) << "a draft is taken where there is nothing better";
+  EXPECT_EQ(solve::solve_for_maps(solves(), "", true)->id, kB)
+      << "a draft is taken where there is nothing better";
   EXPECT_THAT(refused(kA).remedy, HasSubstr("--solve bbbbbbbbbbbbbbbb"));
   set({{"current_solve", kA}});
   EXPECT_THAT(refused("").remedy, HasSubstr("--solve bbbbbbbbbbbbbbbb"));
@@ -230,7 +231,7 @@ TEST_F(CurrentSolve, ThatIsAPreviewFeedsNothingUnlessItIsAskedFor) {
 
 TEST_F(CurrentSolve, KeepsNoMapsOfASolveThatIsNotWhole) {
   solve(kA, "standard", shots(), {{"kept", {"albedo", "normal"}}});
-  const Result<ChoosableSolve> lean = solve_for_maps(solves(), "", false);
+  const Result<solve::ChoosableSolve> lean = solve::solve_for_maps(solves(), "", false);
   ASSERT_FALSE(lean);
   EXPECT_THAT(lean.error().remedy, HasSubstr("--quality standard"));
   solve(kB, "fast", shots());

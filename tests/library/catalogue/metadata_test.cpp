@@ -99,7 +99,7 @@ TEST(Metadata, IsNotChangedOverSomebodyElsesChangeNorWhileAScanWrites) {
   EXPECT_EQ(late.error().kind, ErrorKind::kTryAgain);
   EXPECT_EQ(metadata_of(*read_session(folder))->tags, std::vector<std::string>{"mine"});
 
-  const Result<Descriptor> scan = lock_session(folder);
+  const Result<Descriptor> scan = solve::lock_session(folder);
   ASSERT_TRUE(scan);
   const Result<MetadataChange> meanwhile = change_metadata(folder, {{"tags", {"theirs"}}});
   ASSERT_FALSE(meanwhile);
@@ -118,11 +118,11 @@ TEST(Metadata, OfTheWrongKindIsNamed) {
 TEST(LeftOut, NamesShotsThatAreThere) {
   const Shelf shelf;
   const auto folder = shelf.put("a");
-  EXPECT_TRUE(left_out(*read_session(folder)).empty());
+  EXPECT_TRUE(solve::left_out(*read_session(folder)).empty());
   const Result<MetadataChange> change = change_metadata(folder, {{"left_out", Json::array({0, 0})}});
   ASSERT_TRUE(change) << change.error().message();
   EXPECT_EQ(words_of(*change), "left_out: 0 of a");
-  EXPECT_EQ(left_out(*read_session(folder)), std::vector{0});
+  EXPECT_EQ(solve::left_out(*read_session(folder)), std::vector{0});
   EXPECT_EQ(change_metadata(folder, {{"left_out", Json::array({7})}}).error().kind, ErrorKind::kNoInput);
   for (const Json& wrong : {Json{{"left_out", "0"}}, Json{{"left_out", Json::array({-1})}},
                             Json{{"left_out", Json::array({0.5})}}, Json{{"left_out", 0}},

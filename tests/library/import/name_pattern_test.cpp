@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace weft::app {
+namespace weft::library {
 namespace {
 
 NamePattern pattern(const std::string& text) {
@@ -74,4 +74,4 @@ TEST(StandsBefore, OrdersStrictly) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::library

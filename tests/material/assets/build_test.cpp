@@ -18,7 +18,7 @@
 #include "material/layers/field.h"
 #include "tests/material/assets/made_maps.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -357,4 +357,4 @@ TEST(Graph, NamesWhatEverythingDependsOn) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

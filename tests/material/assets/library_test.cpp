@@ -13,7 +13,7 @@
 #include "material/assets/new_material.h"
 #include "material/assets/resolve.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -101,4 +101,4 @@ TEST_F(Library, ANewMaterialResolvesAndIsNeverWrittenOverAnother) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

@@ -8,7 +8,7 @@
 #include "core/base/files.h"
 #include "core/base/json_document.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ std::map<std::string, std::string> digests_below(const fs::path& folder) {
   return digests;
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -13,7 +13,7 @@
 #include "core/image_io/image_io.h"
 #include "material/assets/build.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// What a channel of a made map holds at a pixel.
 using PixelValue = std::function<double(int x, int y)>;
@@ -62,4 +62,4 @@ LoadedImage map_of(const BuiltMaterial& material, const std::string& name);
 /// SHA-256 of every file below a folder, but for what only spares work.
 std::map<std::string, std::string> digests_below(const std::filesystem::path& folder);
 
-}  // namespace weft::app
+}  // namespace weft::material

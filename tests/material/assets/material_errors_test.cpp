@@ -9,7 +9,7 @@
 #include "tests/material/assets/made_maps.h"
 #include "tests/material/assets/written.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 using testing::AllOf;
@@ -181,4 +181,4 @@ TEST(MaterialErrors, OfPixelsThatAreNoNumbersNameThePlace) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

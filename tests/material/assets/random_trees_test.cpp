@@ -12,7 +12,7 @@
 #include "material/assets/tree.h"
 #include "tests/material/assets/written.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 struct RandomTree {
@@ -131,4 +131,4 @@ TEST(RandomTexts, AreReadOrRefusedAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

@@ -9,7 +9,7 @@
 
 #include "tests/material/assets/written.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 using testing::ElementsAre;
@@ -111,4 +111,4 @@ TEST(Resolve, SaysWhichLayerIsNotThere) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

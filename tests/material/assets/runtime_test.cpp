@@ -7,7 +7,7 @@
 
 #include "tests/material/assets/made_maps.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,4 +73,4 @@ TEST(Runtime, RefusesAFifthMaterial) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

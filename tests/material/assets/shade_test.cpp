@@ -8,7 +8,7 @@
 #include "simulator/reflectance/anisotropic_ggx.h"
 #include "simulator/reflectance/cloth.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 Vec3 toward(double zenith_deg, double azimuth_deg) {
@@ -56,4 +56,4 @@ TEST(Shade, IsDarkBelowTheSurfaceAndAMetalHasNoDiffusePart) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

@@ -8,7 +8,7 @@
 
 #include "material/assets/resolve.h"
 
-namespace weft::app {
+namespace weft::material {
 
 /// Materials in memory, in the folder /m: their texts without the line `schema`, by name.
 using Written = std::map<std::string, std::string>;
@@ -50,4 +50,4 @@ inline std::string refused(const Written& files, const std::string& name,
   return material.error().message();
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

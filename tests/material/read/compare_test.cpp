@@ -14,7 +14,7 @@
 #include "material/assets/map_set.h"
 #include "tests/material/read/small_set.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,28 +37,27 @@ class Compare : public testing::Test {
   Result<MapComparison> compared(const std::string& tested, const std::string& truth) const {
     return compare_maps(file(tested), file(truth), {});
   }
-  NormalComparison angles(const std::string& tested) const {
+  solve::NormalComparison angles(const std::string& tested) const {
     const Result<MapComparison> both = compared(tested, "xyz.exr");
     EXPECT_TRUE(both) << both.error().message();
-    const auto* found = both ? std::get_if<NormalComparison>(&*both) : nullptr;
+    const auto* found = both ? std::get_if<solve::NormalComparison>(&*both) : nullptr;
     EXPECT_NE(found, nullptr) << tested << " is taken for no normals";
-    return found ? *found : NormalComparison{.mean_deg = 180};
+    return found ? *found : solve::NormalComparison{.mean_deg = 180};
   }
   /// The most that a slope of a material's normal is off.
   double worst_slope(const std::string& name, Json value = Json::object()) const {
-    using material::Parameter;
     value["map"] = file(name).string();
     const Result<MapFile> map = find_map(Parameter::kNormal, value, name);
     EXPECT_TRUE(map) << map.error().message();
     if (!map) return 1;
-    const Result<material::ParameterField> field = read_field(Parameter::kNormal, *map, name);
+    const Result<ParameterField> field = read_field(Parameter::kNormal, *map, name);
     EXPECT_TRUE(field) << field.error().message();
     if (!field) return 1;
     double worst = 0;
     for (int y = 0; y < kSmall.height; ++y) {
       for (int x = 0; x < kSmall.width; ++x) {
         const auto n = small_normal(x, y);
-        const auto slopes = material::slopes_of_normal(n[0], n[1], n[2]);
+        const auto slopes = slopes_of_normal(n[0], n[1], n[2]);
         for (int p = 0; p < 2; ++p)
           worst = std::max(worst, std::abs(field->at(x, y, p) - slopes[static_cast<std::size_t>(p)]));
       }
@@ -112,7 +111,7 @@ TEST_F(Compare, HintsAtTheOtherDirectionOfGreen) {
   write_small(file("nor_dx.png"), {"R", "G", "B"},
               [](int x, int y, int c) { return c == 1 ? 1 - packed_part(x, y, c) : packed_part(x, y, c); },
               {.type = SampleType::kUint16});
-  const NormalComparison c = angles("nor_dx.png");
+  const solve::NormalComparison c = angles("nor_dx.png");
   EXPECT_GT(c.mean_deg, 5);
   EXPECT_LT(c.flipped_mean_deg, 0.01);
   EXPECT_LT(worst_slope("nor_dx.png", {{"y", "down"}}), 1e-3);
@@ -171,4 +170,4 @@ TEST_F(Compare, OfOneChannelIsInItsUnit) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

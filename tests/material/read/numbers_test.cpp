@@ -11,7 +11,7 @@
 #include "exchange/document.h"
 #include "tests/material/read/small_set.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -102,4 +102,4 @@ TEST(Names, BeyondAsciiStayApartInFilesAndDocuments) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

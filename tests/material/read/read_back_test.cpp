@@ -18,11 +18,10 @@
 #include "material/read/compare.h"
 #include "tests/material/read/small_set.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
-using material::Parameter;
 
 // A texture of an export, with what export.json says that it lost of the maps: the bound for what is read
 // back.
@@ -94,8 +93,9 @@ TEST_F(ReadBack, CompareTakesEachFileOfEachPresetForWhatItIs) {
     };
     if (file.has("normal.x")) {
       const MapComparison compared = against("normal.exr");
-      ASSERT_TRUE(std::holds_alternative<NormalComparison>(compared)) << file.path;
-      EXPECT_LT(std::get<NormalComparison>(compared).mean_deg, 1.01 * file.normal_deg + 1e-3) << file.path;
+      ASSERT_TRUE(std::holds_alternative<solve::NormalComparison>(compared)) << file.path;
+      EXPECT_LT(std::get<solve::NormalComparison>(compared).mean_deg, 1.01 * file.normal_deg + 1e-3)
+          << file.path;
       ++normals;
     }
     if (file.has("albedo.r")) {
@@ -131,7 +131,7 @@ double truth_of(Parameter parameter, int x, int y, int plane) {
     case kAlbedo:
       return small_albedo(x, y, plane);
     case kNormal:
-      return material::slopes_of_normal(n[0], n[1], n[2])[static_cast<std::size_t>(plane)];
+      return slopes_of_normal(n[0], n[1], n[2])[static_cast<std::size_t>(plane)];
     case kHeight:
       return small_height_mm(x, y);
     case kOcclusion:
@@ -139,7 +139,7 @@ double truth_of(Parameter parameter, int x, int y, int plane) {
     case kRoughness:
       return std::sqrt(small_alpha(x, y));
     case kSpecular:
-      return small_f0(x, y) / material::kF0OfSpecular;
+      return small_f0(x, y) / kF0OfSpecular;
     default:
       return 0;
   }
@@ -159,7 +159,7 @@ TEST_F(ReadBack, MaterialsTakeEachFileOfEachPresetForWhatItIs) {
       const std::string where = file.path.string() + ", " + channel;
       const Result<MapFile> map = find_map(parameter, {{"map", file.path.string()}}, where);
       ASSERT_TRUE(map) << map.error().message();
-      const Result<material::ParameterField> field = read_field(parameter, *map, where);
+      const Result<ParameterField> field = read_field(parameter, *map, where);
       ASSERT_TRUE(field) << field.error().message();
       double worst = 0;
       for (int y = 0; y < kSmall.height; ++y) {
@@ -196,11 +196,11 @@ TEST_F(ReadBack, MaterialsTakeTheMapsOfAScanInTheirUnits) {
       EXPECT_TRUE(map) << map.error().message();
       return map ? read_field(parameter, *map, name) : map.error();
     };
-    const Result<material::ParameterField> field = read(Json::object());
+    const Result<ParameterField> field = read(Json::object());
     ASSERT_TRUE(field) << name << ": " << field.error().message();
     EXPECT_NEAR(field->at(7, 5), truth_of(parameter, 7, 5, 0), 1e-5) << name;
     if (parameter == kNormal) continue;  // its slopes have a strength of their own
-    const Result<material::ParameterField> half = read({{"scale", 0.5}});
+    const Result<ParameterField> half = read({{"scale", 0.5}});
     ASSERT_TRUE(half) << name << ": " << half.error().message();
     EXPECT_NEAR(half->at(7, 5), truth_of(parameter, 7, 5, 0) / 2, 1e-5) << name << ", halved";
   }
@@ -221,9 +221,9 @@ TEST_F(ReadBack, MaterialsScaleWhatIsTheSameAllOverAScanToo) {
     if (scale != 1) value["scale"] = scale;
     const Result<MapFile> map = find_map(Parameter::kSpecular, value, "specular");
     ASSERT_TRUE(map) << map.error().message();
-    const Result<material::ParameterField> field = read_field(Parameter::kSpecular, *map, "specular");
+    const Result<ParameterField> field = read_field(Parameter::kSpecular, *map, "specular");
     ASSERT_TRUE(field) << field.error().message();
-    EXPECT_NEAR(field->at(7, 5), scale * kSmallF0 / material::kF0OfSpecular, 1e-6) << scale;
+    EXPECT_NEAR(field->at(7, 5), scale * kSmallF0 / kF0OfSpecular, 1e-6) << scale;
   }
 }
 
@@ -249,7 +249,7 @@ TEST_F(ReadBack, MaterialsAskForMillimetresWhereNobodySaysThem) {
   value["offset"] = -0.145;
   const Result<MapFile> said = find_map(Parameter::kHeight, value, "m.toml: height_mm");
   ASSERT_TRUE(said) << said.error().message();
-  const Result<material::ParameterField> field = read_field(Parameter::kHeight, *said, "");
+  const Result<ParameterField> field = read_field(Parameter::kHeight, *said, "");
   ASSERT_TRUE(field) << field.error().message();
   EXPECT_NEAR(field->at(7, 5), small_height_mm(7, 5), 1e-5);
 }
@@ -271,4 +271,4 @@ TEST_F(ReadBack, SolvesTakeColoursByTheirTags) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

@@ -9,7 +9,7 @@
 #include "core/base/json_document.h"
 #include "exchange/export/export.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,12 +97,12 @@ void SmallSet::write(const fs::path& folder) const {
 }
 
 fs::path exported_small(const fs::path& folder, const std::string& preset, const fs::path& output) {
-  ExportOptions options = {.input = folder};
+  exchange::ExportOptions options = {.input = folder};
   options.presets = {preset};
   options.output = output / preset;
-  const auto reports = export_maps(options, {.threads = 2, .stop = {}});
+  const auto reports = exchange::export_maps(options, {.threads = 2, .stop = {}});
   EXPECT_TRUE(reports) << preset << ": " << reports.error().message();
   return options.output;
 }
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -10,7 +10,7 @@
 #include "core/image/image.h"
 #include "core/image_io/image_io.h"
 
-namespace weft::app {
+namespace weft::material {
 
 inline constexpr Size kSmall = {40, 28};
 
@@ -44,4 +44,4 @@ inline constexpr std::array<double, 3> kSmallAlbedo = {0.22, 0.24, 0.32};
 std::filesystem::path exported_small(const std::filesystem::path& folder, const std::string& preset,
                                      const std::filesystem::path& output);
 
-}  // namespace weft::app
+}  // namespace weft::material

@@ -10,11 +10,9 @@
 
 #include "tests/material/weave.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
-using material::Surface;
-using material::WeaveSettings;
 using testing::HasSubstr;
 
 // What the recipe `tile` with some keys over its own makes of a cloth.
@@ -25,7 +23,7 @@ struct Made {
 
 Made made_of(const WeaveSettings& weave, const std::string& recipe, double coarser = 1) {
   Made made;
-  made.surface = material::weave_surface(weave, {320, 320});
+  made.surface = weave_surface(weave, {320, 320});
   const Result<Recipe> read = recipe_from_json(Json::parse(recipe), "here");
   EXPECT_TRUE(read) << read.error().message();
   if (!read) return made;
@@ -92,4 +90,4 @@ TEST(Finishing, TakesWidthsInPixelsOfTheFullSizeInAPreviewToo) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

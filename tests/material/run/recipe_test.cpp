@@ -11,7 +11,7 @@
 #include "core/base/files.h"
 #include "core/base/temporary_folder.h"
 
-namespace weft::app {
+namespace weft::material {
 namespace {
 
 using testing::AllOf;
@@ -131,4 +131,4 @@ TEST(Recipe, SaysOfEachStepAndKeyWhatItIs) {
 }
 
 }  // namespace
-}  // namespace weft::app
+}  // namespace weft::material

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr std::array<float, 3> kDyeAlbedo = {0.2F, 0.5F, 0.3F}, kDyeSigma = {0.01F, 0.02F, 0.03F};
@@ -139,4 +139,4 @@ TEST(AlbedoColor, KeepsAlbedoBelowZero) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

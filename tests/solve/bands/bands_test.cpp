@@ -9,7 +9,7 @@
 #include "core/solve/solve_record.h"
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr Size kBandedSize = {96, 150};  // two whole bands and a part of one
@@ -99,4 +99,4 @@ TEST(SolveBands, StopOnRequest) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

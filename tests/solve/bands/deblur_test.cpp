@@ -7,7 +7,7 @@
 
 #include "tests/solve/wavy_maps.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr Size kCloth = WavyMaps::kSize;
@@ -41,4 +41,4 @@ TEST(Deblur, GivesTheSameWhateverTheBands) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -15,7 +15,7 @@
 #include "tests/solve/cloth.h"
 #include "tests/solve/wavy_maps.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr Size kWeaveFrame = {200, 141};
@@ -204,4 +204,4 @@ TEST(LateralColor, GivesTheSameWhateverTheBands) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

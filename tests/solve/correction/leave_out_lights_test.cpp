@@ -9,7 +9,7 @@
 
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 using solver::LeftOut;
@@ -99,4 +99,4 @@ TEST(LeftOutLights, AreTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

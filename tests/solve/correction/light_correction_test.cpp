@@ -10,7 +10,7 @@
 
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr Size kReliefSize = {192, 160};
@@ -91,4 +91,4 @@ TEST(LightCorrection, SubtractsWhatALongWallSendsBack) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

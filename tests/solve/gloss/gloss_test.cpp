@@ -11,7 +11,7 @@
 #include "solve/levels/frame.h"
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr Size kSize = {256, 192};
@@ -283,4 +283,4 @@ TEST(Gloss, OfMattClothChangesNothing) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

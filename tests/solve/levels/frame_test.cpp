@@ -15,7 +15,7 @@
 #include "solve/photographs/cut.h"
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr float kFull = std::numeric_limits<float>::infinity();
@@ -188,4 +188,4 @@ TEST(SolveFrame, SaysHowWellLeftOutLightsArePredicted) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

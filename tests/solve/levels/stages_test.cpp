@@ -15,7 +15,7 @@
 #include "core/base/vec.h"
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 using solver::Level;
@@ -145,4 +145,4 @@ TEST(Stages, CanBePutAnywhere) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -10,7 +10,7 @@
 #include "solver/reflectance/lobe.h"
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 TEST(SolveWork, OnALargerFrameGrowsByWhatEachPartGoesBy) {
@@ -51,4 +51,4 @@ TEST(SolveWork, OfTheRobustLevelTellsTheSearchForALobeApart) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -13,7 +13,7 @@
 #include "solve/bands/sigma_channels.h"
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr Size kSigmaSize = {96, 150};  // two whole bands and a part of one
@@ -178,4 +178,4 @@ TEST(SigmaChannels, AreTheRootOfTheSumOfTheSquaresOfTheirParts) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -11,7 +11,7 @@
 #include "solver/method.h"
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr Size kNoisySize = {256, 192};
@@ -101,4 +101,4 @@ TEST(PlaneWeights, OfMosaicsAndOfTooFewPixelsAreLuminance) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

@@ -6,7 +6,7 @@
 #include "solver/sample_tiles.h"
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr Size kSampledSize = {300, 140};  // two sample tiles beside each other
@@ -62,4 +62,4 @@ TEST(Samples, OpenTheGateOfSlopesForASteepClothAlone) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

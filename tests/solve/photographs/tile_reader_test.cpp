@@ -7,7 +7,7 @@
 
 #include "tests/solve/cloth.h"
 
-namespace weft::pipeline {
+namespace weft::solve {
 namespace {
 
 constexpr Size kReadSize = {128, 16};
@@ -71,4 +71,4 @@ TEST(Mosaics, JoinABracketWhereTheLitShotIsFull) {
 }
 
 }  // namespace
-}  // namespace weft::pipeline
+}  // namespace weft::solve

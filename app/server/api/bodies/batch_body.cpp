@@ -69,13 +69,13 @@ Result<void> add_batch_run(JobSpec& spec, const JobPlaces& places) {
   if (places.batches.empty()) return no_place();
   const Result<fs::path> folder = find_batch(places.batches, name);
   if (!folder) return folder.error();
-  const Result<PlanFile> plan = open_plan(plan_of_batch(places.batches, name));
+  const Result<library::PlanFile> plan = library::open_plan(plan_of_batch(places.batches, name));
   if (!plan && plan.error().kind == ErrorKind::kNoInput)
     return Error{ErrorKind::kNoInput, "batch cannot be run", name, "its plan is not made",
                  "wait for its job"};
   if (!plan) return plan.error();
   double seconds = 0;
-  for (const batch::TaskPlace& task : plan->header.tasks) seconds += task.seconds;
+  for (const library::TaskPlace& task : plan->header.tasks) seconds += task.seconds;
   if (seconds > 0) spec.wants[kPlannedSeconds] = seconds;
   spec.of = name;
   spec.needs.push_back(plan->file.string());

@@ -24,7 +24,7 @@ struct JobPlaces {
   std::filesystem::path copy;           ///< of finished sessions; empty: where each session says
   std::filesystem::path rig_file = {};  ///< empty: there is no rig
   /// A material of the library by its key. kNoInput.
-  std::function<Result<MaterialPlace>(const std::string& key)> material = {};
+  std::function<Result<material::MaterialPlace>(const std::string& key)> material = {};
   /// The folder of what was built of one; without an id of the newest build. kNoInput.
   std::function<Result<std::filesystem::path>(const std::string& key, const std::string& id)> build = {};
   /// The folder of a session by its name, whether or not it can be read. kUsage, kNoInput.

@@ -13,8 +13,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // As its material.json calls it.
-std::string name_in_builds(const MaterialPlace& place) {
-  const Result<ResolvedMaterial> resolved = resolve_material(place, materials_on_disk());
+std::string name_in_builds(const material::MaterialPlace& place) {
+  const Result<material::ResolvedMaterial> resolved =
+      material::resolve_material(place, material::materials_on_disk());
   if (resolved) {
     const auto name = resolved->top.find("name");
     if (name != resolved->top.end() && name->second.from == place.name && name->second.value.is_string())
@@ -30,31 +31,31 @@ Error no_such_build(const std::string& id) {
 
 }  // namespace
 
-std::string key_of(const MaterialPlace& place) {
+std::string key_of(const material::MaterialPlace& place) {
   std::string key = place.name;
-  if (key.starts_with(kLibraryPrefix)) key.erase(0, kLibraryPrefix.size());
+  if (key.starts_with(material::kLibraryPrefix)) key.erase(0, material::kLibraryPrefix.size());
   std::ranges::replace(key, '/', ':');
   return key;
 }
 
-Result<MaterialPlace> library_material(const std::string& key) {
-  for (MaterialPlace& place : list_materials()) {
+Result<material::MaterialPlace> library_material(const std::string& key) {
+  for (material::MaterialPlace& place : material::list_materials()) {
     if (key_of(place) == key) return std::move(place);
   }
   return Error{ErrorKind::kNoInput, "there is no such material", key.substr(0, 40), "",
                "see GET materials for those of the library"};
 }
 
-fs::path builds_of(const MaterialPlace& place) {
-  return place.is_shipped() ? user_materials_folder() / "build" : build_folder_of(place);
+fs::path builds_of(const material::MaterialPlace& place) {
+  return place.is_shipped() ? material::user_materials_folder() / "build" : material::build_folder_of(place);
 }
 
 Result<std::vector<Product>> list_builds(const std::string& key) {
-  const Result<MaterialPlace> place = library_material(key);
+  const Result<material::MaterialPlace> place = library_material(key);
   if (!place) return place.error();
   const std::string name = name_in_builds(*place);
   std::vector<Product> builds;
-  for (Product& product : list_products(kMaterialProduct, builds_of(*place))) {
+  for (Product& product : list_products(material::kMaterialProduct, builds_of(*place))) {
     const Result<std::optional<Json>> document = find_finished(product);
     if (document && *document && (*document)->value("name", Json()) == Json(name))
       builds.push_back(std::move(product));

@@ -14,13 +14,13 @@
 namespace weft::app {
 
 /// Its name without "library:", with ":" for "/".
-std::string key_of(const MaterialPlace& place);
+std::string key_of(const material::MaterialPlace& place);
 
 /// The material that has this key. kNoInput.
-Result<MaterialPlace> library_material(const std::string& key);
+Result<material::MaterialPlace> library_material(const std::string& key);
 
 /// Where it is built: beside its file, those of weft in the user's library.
-std::filesystem::path builds_of(const MaterialPlace& place);
+std::filesystem::path builds_of(const material::MaterialPlace& place);
 
 /// What was built of it, the oldest first. kNoInput.
 Result<std::vector<Product>> list_builds(const std::string& key);

@@ -35,11 +35,12 @@ std::string toml_text(const std::string& text) {
 }
 
 // Its first lines, by which a file that this call made is known again.
-std::string head_of(const MaterialPlace& parent) {
+std::string head_of(const material::MaterialPlace& parent) {
   return fmt::format(
       "# Layers of another material, changed on the page.\nschema = \"weft.material/1\"\ninherits = {}\n",
-      toml_text(parent.is_shipped() || parent.name.starts_with(kLibraryPrefix) ? parent.name
-                                                                               : parent.file.string()));
+      toml_text(parent.is_shipped() || parent.name.starts_with(material::kLibraryPrefix)
+                    ? parent.name
+                    : parent.file.string()));
 }
 
 struct LayerWish {
@@ -84,15 +85,16 @@ std::string text_of(const std::vector<LayerWish>& layers) {
 
 // As it would be once its file is there.
 Result<void> check(const NewMaterialBody& material) {
-  const MaterialPlace place = {std::string(kLibraryPrefix) + material.key, material.file};
-  const Result<MaterialFile> file = parse_material(material.text, place);
+  const material::MaterialPlace place = {std::string(material::kLibraryPrefix) + material.key, material.file};
+  const Result<material::MaterialFile> file = material::parse_material(material.text, place);
   if (!file) return file.error();
-  MaterialSource source = materials_on_disk();
-  source.read = [&, otherwise = source.read](const MaterialPlace& asked) -> Result<MaterialFile> {
+  material::MaterialSource source = material::materials_on_disk();
+  source.read = [&, otherwise =
+                        source.read](const material::MaterialPlace& asked) -> Result<material::MaterialFile> {
     if (asked.file == place.file) return *file;
     return otherwise(asked);
   };
-  const Result<ResolvedMaterial> resolved = resolve_material(place, source);
+  const Result<material::ResolvedMaterial> resolved = material::resolve_material(place, source);
   if (!resolved) return resolved.error();
   return {};
 }
@@ -104,7 +106,7 @@ Result<NewMaterialBody> read_material_body(const Json& body, const fs::path& fol
   if (!name) return name.error();
   if (!inherits) return inherits.error();
   if (!library::is_session_name(*name)) return unfit_layer("name", "must be a plain word");
-  const Result<MaterialPlace> parent = library_material(*inherits);
+  const Result<material::MaterialPlace> parent = library_material(*inherits);
   if (!parent) return parent.error();
   const auto list = body.find("layers");
   if (list == body.end() || !list->is_array() || list->size() > kMostNamedLayers)

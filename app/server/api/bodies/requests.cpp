@@ -73,7 +73,7 @@ void describe(Fields& fields, ControlRequest& request) {
 
 void describe(Fields& fields, SetWorkRequest& request) {
   fields.choice({.name = "part", .says = "What is photographed", .need = kMustSay}, request.part,
-                kSetPartNames);
+                calibration::kSetPartNames);
   fields.value({.name = "name",
                 .says = "Of its folder in sets/ beside the rig file; default the part's",
                 .is_sentence = true},

@@ -38,7 +38,7 @@ struct ControlRequest {
   bool take = false;
 };
 struct SetWorkRequest {
-  SetPart part = SetPart::kBoard;
+  calibration::SetPart part = calibration::SetPart::kBoard;
   std::string name, description, from;
   Json thing = Json::object();
 };

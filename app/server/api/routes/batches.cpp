@@ -46,7 +46,7 @@ Json optional_json(const std::optional<double>& value) {
 }
 
 // One whose plan is not made, or cannot be read, stands there with what is wrong with it.
-Json head_of(const fs::path& batches, const std::string& name, const Result<PlanFile>& plan) {
+Json head_of(const fs::path& batches, const std::string& name, const Result<library::PlanFile>& plan) {
   Json head = {{"name", name},
                {"created", written_at(list_of_batch(batches, name))},
                {"is_planned", plan.has_value()},
@@ -60,7 +60,7 @@ Json head_of(const fs::path& batches, const std::string& name, const Result<Plan
     return head;
   }
   double seconds = 0;
-  for (const batch::TaskPlace& task : plan->header.tasks) seconds += task.seconds;
+  for (const library::TaskPlace& task : plan->header.tasks) seconds += task.seconds;
   head["sessions"] = plan->header.sessions;
   head["left_out"] = plan->header.left_out;
   head["seconds"] = seconds;
@@ -71,13 +71,13 @@ Result<Reply> list_batches(const RigParts& parts) {
   const fs::path batches = batches_of(parts);
   Json list = Json::array();
   for (const std::string& name : batch_names(batches))
-    list.push_back(head_of(batches, name, open_plan(plan_of_batch(batches, name))));
+    list.push_back(head_of(batches, name, library::open_plan(plan_of_batch(batches, name))));
   return json_reply({{"batches", std::move(list)}});
 }
 
-Json levels_of(const batch::Header& header) {
+Json levels_of(const library::BatchHeader& header) {
   Json levels = Json::array();
-  for (const batch::LevelTotal& level : header.levels)
+  for (const library::LevelTotal& level : header.levels)
     levels.push_back({{"quality", level.quality},
                       {"seconds", 3600 * level.hours},
                       {"mean_deg", level.mean_deg},
@@ -87,17 +87,17 @@ Json levels_of(const batch::Header& header) {
   return levels;
 }
 
-Json curve_of(const batch::Header& header) {
+Json curve_of(const library::BatchHeader& header) {
   Json curve = Json::array();
-  for (const batch::Spent& spent : header.curve)
+  for (const library::Spent& spent : header.curve)
     curve.push_back({{"seconds", 3600 * spent.hours}, {"mean_deg", spent.mean_deg}});
   return curve;
 }
 
-Json reasons_of(const batch::Plan& plan) {
-  std::array<int, batch::kReasonNames.size()> counts = {};
-  std::array<double, batch::kReasonNames.size()> seconds = {};
-  for (const batch::SkippedSession& left : plan.left_out) {
+Json reasons_of(const library::BatchPlan& plan) {
+  std::array<int, library::kReasonNames.size()> counts = {};
+  std::array<double, library::kReasonNames.size()> seconds = {};
+  for (const library::SkippedSession& left : plan.left_out) {
     ++counts.at(static_cast<std::size_t>(left.reason));
     seconds.at(static_cast<std::size_t>(left.reason)) += left.seconds;
   }
@@ -105,20 +105,20 @@ Json reasons_of(const batch::Plan& plan) {
   for (std::size_t r = 0; r < counts.size(); ++r) {
     if (counts.at(r) > 0)
       reasons.push_back(
-          {{"reason", batch::kReasonNames.at(r)}, {"sessions", counts.at(r)}, {"seconds", seconds.at(r)}});
+          {{"reason", library::kReasonNames.at(r)}, {"sessions", counts.at(r)}, {"seconds", seconds.at(r)}});
   }
   return reasons;
 }
 
 // Those that cannot be solved first: somebody has to do something.
-Json left_out_of(const batch::Plan& plan) {
+Json left_out_of(const library::BatchPlan& plan) {
   Json list = Json::array();
   for (const bool is_unsolvable : {true, false}) {
-    for (const batch::SkippedSession& left : plan.left_out) {
-      if ((left.reason == batch::Reason::kUnsolvable) != is_unsolvable || list.size() == kMostListed)
+    for (const library::SkippedSession& left : plan.left_out) {
+      if ((left.reason == library::SkipReason::kUnsolvable) != is_unsolvable || list.size() == kMostListed)
         continue;
       list.push_back({{"session", name_of_session(left.session)},
-                      {"reason", batch::kReasonNames.at(static_cast<std::size_t>(left.reason))},
+                      {"reason", library::kReasonNames.at(static_cast<std::size_t>(left.reason))},
                       {"said", left.said},
                       {"seconds", left.seconds}});
     }
@@ -127,14 +127,14 @@ Json left_out_of(const batch::Plan& plan) {
 }
 
 // The dearest first.
-Json solves_of(const batch::Plan& plan) {
-  std::vector<const batch::PlannedSolve*> solves;
-  for (const batch::PlannedSolve& planned : plan.solves) solves.push_back(&planned);
+Json solves_of(const library::BatchPlan& plan) {
+  std::vector<const library::PlannedSolve*> solves;
+  for (const library::PlannedSolve& planned : plan.solves) solves.push_back(&planned);
   std::ranges::stable_sort(solves, std::greater{},
-                           [](const batch::PlannedSolve* planned) { return planned->forecast.seconds; });
+                           [](const library::PlannedSolve* planned) { return planned->forecast.seconds; });
   if (solves.size() > kMostListed) solves.resize(kMostListed);
   Json list = Json::array();
-  for (const batch::PlannedSolve* planned : solves)
+  for (const library::PlannedSolve* planned : solves)
     list.push_back({{"session", name_of_session(planned->session)},
                     {"quality", planned->quality},
                     {"seconds", planned->forecast.seconds},
@@ -148,11 +148,11 @@ Json solves_of(const batch::Plan& plan) {
   return list;
 }
 
-Json planned_of(const BatchState& state) {
-  const batch::Plan& plan = state.plan;
-  const batch::MeanError error = batch::error_of(plan.solves);
+Json planned_of(const library::BatchState& state) {
+  const library::BatchPlan& plan = state.plan;
+  const library::MeanError error = library::error_of(plan.solves);
   std::uint64_t memory = 0, write = 0;
-  for (const batch::PlannedSolve& planned : plan.solves) {
+  for (const library::PlannedSolve& planned : plan.solves) {
     memory = std::max(memory, planned.memory_bytes);
     write += planned.write_bytes;
   }
@@ -171,11 +171,11 @@ Json planned_of(const BatchState& state) {
 }
 
 /// Errors of find_batch() and read_batch(); kNoInput where its plan is not made.
-Result<BatchState> state_of(const RigParts& parts, const std::string& name) {
+Result<library::BatchState> state_of(const RigParts& parts, const std::string& name) {
   const fs::path batches = batches_of(parts);
   if (const Result<fs::path> folder = find_batch(batches, name); !folder) return folder.error();
   const fs::path plan = plan_of_batch(batches, name);
-  if (is_there(plan)) return read_batch(plan);
+  if (is_there(plan)) return library::read_batch(plan);
   return Error{ErrorKind::kNoInput, "batch is not planned", name, "its job has not made the plan",
                "wait for it, or look at why it failed"};
 }
@@ -185,11 +185,12 @@ Result<Reply> one_batch(const RigParts& parts, const Call& call) {
   const fs::path batches = batches_of(parts);
   if (const Result<fs::path> folder = find_batch(batches, name); !folder) return folder.error();
   const fs::path file = plan_of_batch(batches, name);
-  Json document = {{"batch", head_of(batches, name, open_plan(file))}, {"plan", Json()}, {"done", Json()}};
+  Json document = {
+      {"batch", head_of(batches, name, library::open_plan(file))}, {"plan", Json()}, {"done", Json()}};
   if (!is_there(file)) return json_reply(document);
-  const Result<BatchState> state = read_batch(file);
+  const Result<library::BatchState> state = library::read_batch(file);
   if (!state) return state.error();
-  const batch::Summary& s = state->summary;
+  const library::BatchSummary& s = state->summary;
   document["plan"] = planned_of(*state);
   document["done"] = {{"solved", s.solved + s.there}, {"failed", s.failed}, {"missing", s.missing}};
   return json_reply(document);
@@ -200,31 +201,31 @@ std::map<std::string, std::string> pictures_of(const fs::path& report) {
   std::map<std::string, std::string> pictures;
   const Result<Json> document = read_json(report / kReportNumbers, "weft.batch-report", 1);
   if (!document || !document->contains("pictures")) return pictures;
-  const auto listed = read_list<ListedPicture>((*document)["pictures"], kReportNumbers);
-  for (const ListedPicture& each : listed ? *listed : std::vector<ListedPicture>())
+  const auto listed = read_list<library::ListedPicture>((*document)["pictures"], kReportNumbers);
+  for (const library::ListedPicture& each : listed ? *listed : std::vector<library::ListedPicture>())
     pictures[each.session] = each.file;
   return pictures;
 }
 
 // The gravest first.
-Json changes_of(const BatchState& state, const fs::path& report) {
+Json changes_of(const library::BatchState& state, const fs::path& report) {
   const std::map<std::string, std::string> pictures = pictures_of(report);
   Json changes = Json::array();
   for (const std::size_t index : state.summary.changed) {
     if (changes.size() == kMostListed) break;
-    const batch::Row& row = state.rows[index];
+    const library::BatchRow& row = state.rows[index];
     const auto picture = pictures.find(row.planned->session);
     changes.push_back({{"session", name_of_session(row.planned->session)},
                        {"solve", row.result->solve},
                        {"before", row.planned->before},
                        {"change", object_of(*row.result->change)},
-                       {"regressions", batch::regressions(*row.result->change)},
+                       {"regressions", library::regressions(*row.result->change)},
                        {"picture", picture == pictures.end() ? Json() : Json(picture->second)}});
   }
   return changes;
 }
 
-Json names_of(const std::vector<std::size_t>& rows, const BatchState& state) {
+Json names_of(const std::vector<std::size_t>& rows, const library::BatchState& state) {
   Json names = Json::array();
   for (const std::size_t index : rows) {
     if (names.size() == kMostListed) break;
@@ -235,16 +236,16 @@ Json names_of(const std::vector<std::size_t>& rows, const BatchState& state) {
 
 Result<Reply> report_of(const RigParts& parts, const Call& call) {
   const std::string& name = call.segments.at(0);
-  const Result<BatchState> state = state_of(parts, name);
+  const Result<library::BatchState> state = state_of(parts, name);
   if (!state) return state.error();
   const fs::path report = report_of_batch(batches_of(parts), name);
-  Json document = object_of(batch::SummaryDocument{state->summary, state->rows});
+  Json document = object_of(library::SummaryDocument{state->summary, state->rows});
   for (const char* all : {"sessions", "missing_tasks"}) document.erase(all);
   document["changed"] = state->summary.changed.size();
   document["changes"] = changes_of(*state, report);
   document["barely_solved"] = names_of(state->summary.barely_solved, *state);
   document["warned"] = names_of(state->summary.warned, *state);
-  document["verdicts"] = weft::json_of(verdicts_of(*state));
+  document["verdicts"] = weft::json_of(library::verdicts_of(*state));
   document["has_page"] = is_there(report / kPage);
   return json_reply(document);
 }
@@ -273,8 +274,8 @@ Error unfit_acceptance(const std::string& field, const char* rule) {
   return {ErrorKind::kUsage, "solves cannot be accepted so", field, rule, "see POST batches in openapi.json"};
 }
 
-Result<AcceptBatchOptions> read_acceptance(const Json& body) {
-  AcceptBatchOptions options;
+Result<library::AcceptBatchOptions> read_acceptance(const Json& body) {
+  library::AcceptBatchOptions options;
   for (const auto& [key, value] : body.items()) {
     if (key == "with_worse" || key == "dry_run") {
       if (!value.is_boolean()) return unfit_acceptance(key, "must be true or false");
@@ -294,17 +295,17 @@ Result<AcceptBatchOptions> read_acceptance(const Json& body) {
 Result<Reply> accept_solves(const RigParts& parts, const Call& call) {
   const Result<Json> body = parse_body(call.body);
   if (!body) return body.error();
-  Result<AcceptBatchOptions> options = read_acceptance(*body);
+  Result<library::AcceptBatchOptions> options = read_acceptance(*body);
   if (!options) return std::move(options).error();
   const std::string& name = call.segments.at(0);
-  if (const Result<BatchState> state = state_of(parts, name); !state) return state.error();
+  if (const Result<library::BatchState> state = state_of(parts, name); !state) return state.error();
   options->plan = plan_of_batch(batches_of(parts), name);
-  const Result<std::vector<Accepted>> all = accept_batch(*options);
+  const Result<std::vector<library::Accepted>> all = library::accept_batch(*options);
   if (!all) return all.error();
   if (!options->dry_run) parts.library.expire();
   int moved = 0;
   Json left = Json::array();
-  for (const Accepted& each : *all) {
+  for (const library::Accepted& each : *all) {
     moved += each.is_moved ? 1 : 0;
     if (each.is_moved || left.size() == kMostListed) continue;
     left.push_back({{"session", name_of_session(each.session)}, {"why", each.why}});
@@ -325,7 +326,7 @@ Result<Reply> forget_batch(const RigParts& parts, const Call& call) {
       return Error{ErrorKind::kCannotCreate, "batch cannot be forgotten", name,
                    fmt::format("its job {} is {}", job.id, name_of(job.state)), "cancel it first, or wait"};
   }
-  Json head = head_of(batches, name, open_plan(plan_of_batch(batches, name)));
+  Json head = head_of(batches, name, library::open_plan(plan_of_batch(batches, name)));
   remove_batch(batches, name);
   return json_reply(head);
 }

@@ -54,7 +54,7 @@ Result<Reply> leave_out_or_take_back(const RigParts& parts, const Call& call) {
   return replied(parts.sets.leave_out(wish->name, wish->out));
 }
 
-Json json_of(const ListedCalibration& one, const std::filesystem::path& root,
+Json json_of(const calibration::ListedCalibration& one, const std::filesystem::path& root,
              const std::filesystem::path& current) {
   Json check;
   if (one.check) check = {{"date", one.check->date}, {"passed", one.check->passed}};
@@ -68,22 +68,22 @@ Json json_of(const ListedCalibration& one, const std::filesystem::path& root,
 
 Result<Reply> list_of_calibrations(const RigParts& parts, const Call&) {
   const std::filesystem::path root = parts.rig.folder();
-  const Result<std::vector<ListedCalibration>> all = list_calibrations(root);
+  const Result<std::vector<calibration::ListedCalibration>> all = calibration::list_calibrations(root);
   if (!all) return all.error();
   const std::filesystem::path current = capture::calibration_now(parts.rig);
   Json calibrations = Json::array();
-  for (const ListedCalibration& one : *all) calibrations.push_back(json_of(one, root, current));
-  return json_reply(
-      {{"calibrations", std::move(calibrations)}, {"complete_series", complete_series(root / "sets")}});
+  for (const calibration::ListedCalibration& one : *all) calibrations.push_back(json_of(one, root, current));
+  return json_reply({{"calibrations", std::move(calibrations)},
+                     {"complete_series", calibration::complete_series(root / "sets")}});
 }
 
 Result<Reply> history_of_rig(const RigParts& parts, const Call&) {
-  CalibrateHistoryOptions options;
+  calibration::CalibrateHistoryOptions options;
   options.rig = parts.rig.folder();
   if (is_there(parts.rig.scan.sessions)) options.sessions = parts.rig.scan.sessions;
-  const Result<CalibrationHistory> history = calibrate_history(options, {});
+  const Result<calibration::CalibrationHistory> history = calibration::calibrate_history(options, {});
   if (!history) return history.error();
-  Json document = document_of(history->report);
+  Json document = calibration::document_of(history->report);
   document["warnings"] = history->warnings;
   return json_reply(document);
 }
@@ -97,10 +97,11 @@ Result<Reply> accept(const RigParts& parts, const Call& call) {
   const Result<std::filesystem::path> folder =
       folder_below(parts.rig.folder(), wish->calibration.string(), "calibration");
   if (!folder) return folder.error();
-  const Result<CalibrationChange> change = change_between(capture::calibration_now(parts.rig), *folder);
+  const Result<calibration::CalibrationChange> change =
+      calibration::change_between(capture::calibration_now(parts.rig), *folder);
   if (!change) return change.error();
   if (!wish->dry_run) {
-    if (Result<void> named = name_calibration(parts.rig.file, *folder); !named)
+    if (Result<void> named = calibration::name_calibration(parts.rig.file, *folder); !named)
       return std::move(named).error();
   }
   Json document = json_of(*change);

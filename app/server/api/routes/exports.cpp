@@ -35,8 +35,8 @@ Json names_of_files(const exchange::Preset& preset) {
 // One that cannot be read stands there with what is wrong with it.
 Result<Reply> presets(const Call&) {
   Json list = Json::array();
-  for (const KnownPreset& known : known_presets()) {
-    const Result<exchange::Preset> preset = read_preset(known.name);
+  for (const exchange::KnownPreset& known : exchange::known_presets()) {
+    const Result<exchange::Preset> preset = exchange::read_preset(known.name);
     list.push_back({{"name", known.name},
                     {"says", preset ? preset->says : ""},
                     {"is_own", !known.file.empty()},
@@ -51,10 +51,10 @@ Error no_such_export(const std::string& name) {
           "see the list of exports"};
 }
 
-Result<ExportFacts> one_export(const fs::path& folder, const std::string& preset) {
-  if (!library::is_session_name(preset) || !is_there(folder / preset / kExportProduct.document))
+Result<exchange::ExportFacts> one_export(const fs::path& folder, const std::string& preset) {
+  if (!library::is_session_name(preset) || !is_there(folder / preset / exchange::kExportProduct.document))
     return no_such_export(preset);
-  return read_export(folder / preset);
+  return exchange::read_export(folder / preset);
 }
 
 Result<Reply> list_of(const fs::path& folder) {
@@ -65,11 +65,11 @@ Result<Reply> list_of(const fs::path& folder) {
   std::ranges::sort(names);
   Json list = Json::array();
   for (const std::string& name : names) {
-    Result<ExportFacts> facts = one_export(folder, name);
+    Result<exchange::ExportFacts> facts = one_export(folder, name);
     if (!facts) continue;
     list.push_back({{"preset", name},
                     {"folder", (folder / name).string()},
-                    {"created", written_at(folder / name / kExportProduct.document)},
+                    {"created", written_at(folder / name / exchange::kExportProduct.document)},
                     {"bytes", library::bytes_below(folder / name)},
                     {"document", std::move(facts->document)}});
   }
@@ -85,18 +85,18 @@ std::string name_in_header(const std::string& file) {
 }
 
 // The digest of a file that is listed: a texture, or a document of textures.
-Result<std::string> digest_of(const ExportFacts& facts, const std::string& name) {
-  for (const ExportedTexture& each : facts.files) {
+Result<std::string> digest_of(const exchange::ExportFacts& facts, const std::string& name) {
+  for (const exchange::ExportedTexture& each : facts.files) {
     if (each.file == name) return each.sha256;
   }
-  for (const ExportedDocument& each : facts.documents) {
+  for (const exchange::ExportedDocument& each : facts.documents) {
     if (each.name == name) return each.sha256;
   }
   return no_such_export(name);
 }
 
 Result<Reply> file_of(const fs::path& folder, const std::string& preset, const std::string& asked) {
-  const Result<ExportFacts> facts = one_export(folder, preset);
+  const Result<exchange::ExportFacts> facts = one_export(folder, preset);
   if (!facts) return facts.error();
   std::string name = asked;
   std::ranges::replace(name, kFolderMark, '/');

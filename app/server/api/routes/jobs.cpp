@@ -161,10 +161,11 @@ Route step_route(const RigParts& parts, const char* path, JobStep step) {
 }  // namespace
 
 Resource jobs_resource(const RigParts& parts) {
-  const Json things = {{"board", schema_of<BoardDescription>()},
-                       {"sheet", schema_of<SheetDescription>()},
-                       {"chart", schema_of<ChartEdition>()}};
-  Reply forms = json_reply({{"jobs", job_forms()}, {"walks", json_of_walks()}, {"things", things}});
+  const Json things = {{"board", schema_of<calibration::BoardDescription>()},
+                       {"sheet", schema_of<calibration::SheetDescription>()},
+                       {"chart", schema_of<calibration::ChartEdition>()}};
+  Reply forms =
+      json_reply({{"jobs", job_forms()}, {"walks", calibration::json_of_walks()}, {"things", things}});
   forms.keeping = Keeping::kAskAgain;
   forms.tag = sha256_of(forms.body);
   return {

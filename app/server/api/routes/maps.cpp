@@ -22,11 +22,11 @@ Json names_of(const std::vector<Named>& all) {
 }
 
 // What a list says of a set of maps.
-Json set_summary(const SessionSet& set) {
+Json set_summary(const material::SessionSet& set) {
   const Product& product = set.product;
-  const MapSetFacts& facts = set.facts;
+  const material::MapSetFacts& facts = set.facts;
   return {{"id", product.id},
-          {"created", written_at(product.folder / kMapsProduct.document)},
+          {"created", written_at(product.folder / material::kMapsProduct.document)},
           {"bytes", library::bytes_below(product.folder)},
           {"solve", facts.source.solve},
           {"level", set.level},
@@ -44,11 +44,12 @@ Json set_summary(const SessionSet& set) {
 Result<Reply> sets(const RigParts& parts, const Call& call) {
   const Result<Session> session = parts.library.session(call.segments.at(0));
   if (!session) return session.error();
-  const library::SessionSolves solves = library::solves_of(*session);
-  const std::vector<SessionSet> all = sets_of(solves, true), finals = sets_of(solves);
-  const SessionSet* const current = set_to_use(solves, finals, {});
+  const solve::SessionSolves solves = solve::solves_of(*session);
+  const std::vector<material::SessionSet> all = material::sets_of(solves, true),
+                                          finals = material::sets_of(solves);
+  const material::SessionSet* const current = material::set_to_use(solves, finals, {});
   Json list = Json::array();
-  for (const SessionSet& set : all) list.push_back(set_summary(set));
+  for (const material::SessionSet& set : all) list.push_back(set_summary(set));
   std::ranges::reverse(list);
   return json_reply(
       {{"sets", std::move(list)}, {"current", current != nullptr ? Json(current->product.id) : Json()}});
@@ -79,21 +80,21 @@ Result<Reply> picture_of_set(const RigParts& parts, const Call& call) {
   return reply;
 }
 
-const char* word_of(StepHolds holds) {
+const char* word_of(material::StepHolds holds) {
   switch (holds) {
-    case StepHolds::kNumber:
+    case material::StepHolds::kNumber:
       return "number";
-    case StepHolds::kMaybe:
+    case material::StepHolds::kMaybe:
       return "maybe";
-    case StepHolds::kWhole:
+    case material::StepHolds::kWhole:
       return "whole";
-    case StepHolds::kFlag:
+    case material::StepHolds::kFlag:
       return "flag";
-    case StepHolds::kWord:
+    case material::StepHolds::kWord:
       return "word";
-    case StepHolds::kNumbers:
+    case material::StepHolds::kNumbers:
       return "numbers";
-    case StepHolds::kSpots:
+    case material::StepHolds::kSpots:
       return "spots";
   }
   return "";
@@ -102,9 +103,9 @@ const char* word_of(StepHolds holds) {
 // All that a recipe may say, and the recipes that weft brings along.
 Result<Reply> recipes(const Call&) {
   Json steps = Json::array(), known = Json::array();
-  for (const RecipeStepKind& kind : step_kinds()) {
+  for (const material::RecipeStepKind& kind : material::step_kinds()) {
     Json keys = Json::array();
-    for (const StepKey& key : kind.keys) {
+    for (const material::StepKey& key : kind.keys) {
       keys.push_back({{"name", key.name},
                       {"says", key.says},
                       {"holds", word_of(key.holds)},
@@ -115,8 +116,8 @@ Result<Reply> recipes(const Call&) {
     }
     steps.push_back({{"name", kind.name}, {"says", kind.says}, {"keys", std::move(keys)}});
   }
-  for (const std::string& name : recipe_names()) {
-    Json recipe = json_of(recipe_named(name));
+  for (const std::string& name : material::recipe_names()) {
+    Json recipe = json_of(material::recipe_named(name));
     recipe["name"] = name;
     known.push_back(std::move(recipe));
   }

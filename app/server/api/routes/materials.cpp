@@ -17,7 +17,7 @@ namespace {
 
 Result<Reply> materials(const Call&) {
   Json list = Json::array();
-  for (const MaterialPlace& place : list_materials())
+  for (const material::MaterialPlace& place : material::list_materials())
     list.push_back({{"key", key_of(place)}, {"name", place.name}, {"is_own", !place.is_shipped()}});
   return json_reply({{"materials", std::move(list)}});
 }
@@ -26,7 +26,7 @@ Result<Reply> materials(const Call&) {
 Result<Reply> new_material(const Call& call) {
   const Result<Json> body = parse_body(call.body);
   if (!body) return body.error();
-  const Result<NewMaterialBody> material = read_material_body(*body, user_materials_folder());
+  const Result<NewMaterialBody> material = read_material_body(*body, material::user_materials_folder());
   if (!material) return material.error();
   if (Result<void> ok = make_writable_folder(material->file.parent_path()); !ok) return std::move(ok).error();
   if (Result<void> ok = write_file(material->file, material->text); !ok) return std::move(ok).error();
@@ -35,12 +35,13 @@ Result<Reply> new_material(const Call& call) {
 
 // With the names of its layers in their order, which values by key do not tell.
 Result<Reply> one_material(const Call& call) {
-  const Result<MaterialPlace> place = library_material(call.segments.at(0));
+  const Result<material::MaterialPlace> place = library_material(call.segments.at(0));
   if (!place) return place.error();
-  const Result<ResolvedMaterial> resolved = resolve_material(*place, materials_on_disk());
+  const Result<material::ResolvedMaterial> resolved =
+      material::resolve_material(*place, material::materials_on_disk());
   if (!resolved) return resolved.error();
   Json document = json_of(*resolved), layers = Json::array();
-  for (const MaterialLayer& layer : resolved->layers) layers.push_back(layer.name);
+  for (const material::MaterialLayer& layer : resolved->layers) layers.push_back(layer.name);
   document["layers"] = std::move(layers);
   return json_reply(document);
 }

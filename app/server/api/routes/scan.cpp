@@ -18,7 +18,7 @@ namespace weft::app {
 namespace {
 
 /// When it was measured, and what the last check of it said; null where nothing is known.
-Json age_of(const Calibration& calibration, const std::optional<LastCheck>& check) {
+Json age_of(const Calibration& calibration, const std::optional<calibration::LastCheck>& check) {
   Json age = Json::object();
   if (!calibration.subject.measured.empty()) age["measured"] = calibration.subject.measured;
   if (check) {
@@ -36,15 +36,17 @@ Result<void> check_moved(capture::ScanRequest& request) {
   if (request.calibration.empty()) return {};
   const Result<Calibration> calibration = read_calibration(request.calibration);
   if (!calibration) return {};  // the scan says what is wrong with it
-  const std::optional<LastCheck> check = last_check_of(request.calibration, calibration->id);
+  const std::optional<calibration::LastCheck> check =
+      calibration::last_check_of(request.calibration, calibration->id);
   request.calibrated = age_of(*calibration, check);
   if (!check || check->passed) return {};
   if (accepted.is_null()) {
-    return moved_since(*check,
-                       "calibrate it again (weft calibrate update), or give a reason to scan all the same: "
-                       "--accept-moved WHY, \"accept_moved\" over HTTP");
+    return calibration::moved_since(
+        *check,
+        "calibrate it again (weft calibrate update), or give a reason to scan all the same: "
+        "--accept-moved WHY, \"accept_moved\" over HTTP");
   }
-  request.accepted_moved = accepted_moved(*check, accepted["why"].get<std::string>());
+  request.accepted_moved = calibration::accepted_moved(*check, accepted["why"].get<std::string>());
   return {};
 }
 

@@ -64,7 +64,7 @@ Json room_in(const std::filesystem::path& folder) {
   const std::uint64_t free = free_disk_bytes(folder);
   return {{"folder", folder.string()},
           {"free_bytes", free},
-          {"scans_left", free / (kFrameBytes * kSessionFrames)}};
+          {"scans_left", free / (capture::kFrameBytes * capture::kSessionFrames)}};
 }
 
 Json rooms_of(const capture::Rig& rig, const std::filesystem::path& state) {
@@ -78,15 +78,16 @@ Json findings_of(const capture::Rig& rig, bool leaves_alone,
                  const std::vector<std::filesystem::path>& silent_archives) {
   Json findings = Json::array();
   for (const std::filesystem::path& archive : silent_archives) {
-    findings.push_back(json_of(fault_of(
+    findings.push_back(json_of(capture::fault_of(
         "archive", {ErrorKind::kInputOutput, "an archive does not answer", archive.string(),
                     "what was known of it stays in the library", "look whether its disk is there: df"})));
   }
-  for (const SetupFinding& found :
-       leaves_alone || rig.leds == 0 ? std::vector<SetupFinding>() : examine_rig(rig, {})) {
+  for (const capture::SetupFinding& found :
+       leaves_alone || rig.leds == 0 ? std::vector<capture::SetupFinding>() : capture::examine_rig(rig, {})) {
     findings.push_back(json_of(found));
   }
-  for (const SetupFinding& found : examine_folders(rig, kFrameBytes)) findings.push_back(json_of(found));
+  for (const capture::SetupFinding& found : capture::examine_folders(rig, capture::kFrameBytes))
+    findings.push_back(json_of(found));
   return {{"rig", rig.name}, {"leaves_alone", leaves_alone}, {"findings", std::move(findings)}};
 }
 
@@ -119,7 +120,7 @@ Resource server_resource(const RigParts& parts) {
               if (found) return json_reply(*found);
               return json_reply({{"rig", parts.rig.name},
                                  {"leaves_alone", is_ours},
-                                 {"findings", {json_of(fault_of("disk", silent_disk()))}}});
+                                 {"findings", {json_of(capture::fault_of("disk", silent_disk()))}}});
             }}}};
 }
 

@@ -67,8 +67,8 @@ Result<Reply> find_sessions(const RigParts& parts, const Call& call) {
 }
 
 // The solve that maps are made of without a draft; null where there is none.
-Json maps_of(const library::SessionSolves& solves) {
-  const Result<library::ChoosableSolve> solve = library::solve_for_maps(solves, "", false);
+Json maps_of(const solve::SessionSolves& solves) {
+  const Result<solve::ChoosableSolve> solve = solve::solve_for_maps(solves, "", false);
   if (!solve) return nullptr;
   return {{"solve", solve->id}, {"level", solve->level}, {"stale", why_stale(solves, solve->id)}};
 }
@@ -94,12 +94,12 @@ Result<Reply> one_session(const RigParts& parts, const Call& call) {
     }
     frames.push_back(std::move(frame));
   }
-  const library::SessionSolves solves = library::solves_of(*session);
+  const solve::SessionSolves solves = solve::solves_of(*session);
   const Result<library::Metadata> said = library::metadata_of(*session);
   return json_reply({{"name", name},
                      {"folder", session->folder.string()},
                      {"said", said ? library::json_of(*said) : Json()},
-                     {"left_out", library::left_out(*session)},
+                     {"left_out", solve::left_out(*session)},
                      {"current_solve", solves.current ? solves.current_one()->id : ""},
                      {"current_level", solves.current ? solves.current_one()->level : ""},
                      {"maps_of", maps_of(solves)},

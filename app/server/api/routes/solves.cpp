@@ -17,11 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Json summary_of(const SolveFacts& solve, const fs::path& folder, const library::SessionSolves& of) {
+Json summary_of(const SolveFacts& solve, const fs::path& folder, const solve::SessionSolves& of) {
   Json warnings = Json::array();
   for (const Verdict& verdict : solve.warnings) warnings.push_back(verdict.name);
-  const library::ChoosableSolve* const current = of.current_one();
-  const library::ChoosableSolve* const found = of.find(solve.id);
+  const solve::ChoosableSolve* const current = of.current_one();
+  const solve::ChoosableSolve* const found = of.find(solve.id);
   return {{"id", solve.id},
           {"is_current", current != nullptr && current->id == solve.id},
           {"outdated", found != nullptr ? found->outdated : ""},
@@ -37,7 +37,7 @@ Json summary_of(const SolveFacts& solve, const fs::path& folder, const library::
 Result<Reply> solves(const RigParts& parts, const Call& call) {
   const Result<Session> session = parts.library.session(call.segments.at(0));
   if (!session) return session.error();
-  const library::SessionSolves of = library::solves_of(*session);
+  const solve::SessionSolves of = solve::solves_of(*session);
   Json list = Json::array();
   for (const Product& product : list_solves(session->folder)) {
     const Result<std::optional<Json>> document = find_finished(product);
@@ -86,9 +86,11 @@ Result<Reply> compare(const RigParts& parts, const Call& call) {
     both[i] = std::move(*viewed);
   }
   const auto file = [&](std::size_t i, const char* name) { return both[i].folder / name; };
-  const Result<NormalComparison> normal = compare_normals(file(0, "normal.exr"), file(1, "normal.exr"), {});
+  const Result<solve::NormalComparison> normal =
+      material::compare_normals(file(0, "normal.exr"), file(1, "normal.exr"), {});
   if (!normal) return normal.error();
-  const Result<AlbedoComparison> albedo = compare_albedo(file(0, "albedo.exr"), file(1, "albedo.exr"), {});
+  const Result<material::AlbedoComparison> albedo =
+      material::compare_albedo(file(0, "albedo.exr"), file(1, "albedo.exr"), {});
   if (!albedo) return albedo.error();
   return json_reply(
       {{"normal",

@@ -51,7 +51,8 @@ std::optional<SolveFacts> solve_facts_of(const Session& session, const std::stri
 }
 
 Result<void> add_layers(Viewed& viewed) {
-  Result<Layers> layers = viewed.set ? layers_of_set(viewed.folder, *viewed.set) : layers_of(viewed.folder);
+  Result<Layers> layers =
+      viewed.set ? layers_of_set(viewed.folder, *viewed.set) : layers_of(viewed.folder);
   if (!layers) return std::move(layers).error();
   viewed.layers = std::move(*layers);
   return {};
@@ -94,8 +95,8 @@ Json common_json(const Viewed& viewed) {
                    {"albedo_scale", is_absolute ? "absolute" : "relative"},
                    {"warnings", std::move(warnings)}};
   if (viewed.id == kTruth) return document;
-  document["created"] = written_at(viewed.folder / (viewed.is_build ? kMaterialProduct.document
-                                                    : viewed.set    ? kMapsProduct.document
+  document["created"] = written_at(viewed.folder / (viewed.is_build ? material::kMaterialProduct.document
+                                                    : viewed.set    ? material::kMapsProduct.document
                                                                     : kSolveProduct.document));
   document["bytes"] = library::bytes_below(viewed.folder);
   return document;
@@ -126,9 +127,9 @@ Json stale_of(const Viewed& viewed) {
     }
     return stale;
   }
-  const library::SessionSolves solves = library::solves_of(viewed.session);
-  if (viewed.set) return why_stale(solves, text_at(*viewed.set, "solve"));
-  const library::ChoosableSolve* const solve = solves.find(viewed.id);
+  const solve::SessionSolves solves = solve::solves_of(viewed.session);
+  if (viewed.set) return why_stale(solves, material::text_at(*viewed.set, "solve"));
+  const solve::ChoosableSolve* const solve = solves.find(viewed.id);
   const bool is_outdated = solve != nullptr && !solve->outdated.empty();
   return is_outdated ? Json::array({solve->outdated}) : Json::array();
 }
@@ -174,10 +175,11 @@ Result<Viewed> find_map_set(const RigParts& parts, const std::string& name, cons
   if (!session) return std::move(session).error();
   Viewed viewed;
   viewed.session = std::move(*session);
-  const Result<Product> product = find_product(kMapsProduct, map_sets_of(viewed.session), id);
+  const Result<Product> product = find_product(material::kMapsProduct, map_sets_of(viewed.session), id);
   Result<Json> document = finished(product, "there is no such set of maps", id);
   if (!document) return std::move(document).error();
-  const Result<MapSetFacts> facts = read_fields<MapSetFacts>(*document, kMapsProduct.document);
+  const Result<material::MapSetFacts> facts =
+      read_fields<material::MapSetFacts>(*document, material::kMapsProduct.document);
   if (!facts) return facts.error();
   viewed.mm_per_pixel = facts->mm_per_pixel;
   viewed.folder = product->folder;
@@ -193,7 +195,7 @@ Result<Viewed> find_built_maps(const RigParts&, const std::string& material, con
   const Result<Product> product = find_build(material, id);
   Result<Json> document = finished(product, "there is no such build", id);
   if (!document) return std::move(document).error();
-  JsonFields fields(*document, kMaterialProduct.document);
+  JsonFields fields(*document, material::kMaterialProduct.document);
   Viewed viewed;
   viewed.mm_per_pixel = fields.optional_number("mm_per_pixel").value_or(0);
   const Size size = {fields.integer("width"), fields.integer("height")};

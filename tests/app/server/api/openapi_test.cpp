@@ -288,9 +288,9 @@ TEST_F(OpenApi, DescribesBatches) {
   const std::filesystem::path places = scripted_.rig.daemon.state / kBatchFolder;
   ASSERT_TRUE(begin_batch(places, "night", {"/archive/a.weft"}));
   EXPECT_EQ(conforming("GET", one, here).json()["plan"], Json()) << "it is not made";
-  batch::Plan plan = batch::sample_plan(2);
-  plan.left_out.push_back({"/archive/b.weft", batch::Reason::kThere, "", "it is there", 9});
-  ASSERT_TRUE(write_file(plan_of_batch(places, "night"), batch::text_of(plan)));
+  library::BatchPlan plan = library::sample_plan(2);
+  plan.left_out.push_back({"/archive/b.weft", library::SkipReason::kThere, "", "it is there", 9});
+  ASSERT_TRUE(write_file(plan_of_batch(places, "night"), library::text_of(plan)));
   EXPECT_EQ(conforming("GET", batches, batches).json()["batches"].size(), 1U);
   EXPECT_EQ(conforming("GET", one, here).json()["plan"]["jobs"].size(), 2U);
   EXPECT_EQ(conforming("GET", one + "/report", here + "/report").json()["missing"], 2);
@@ -356,13 +356,13 @@ TEST_F(OpenApi, DescribesWhatLeaves) {
   ASSERT_TRUE(write_file(folder / "maps" / "a.png", "texels"));
   ASSERT_TRUE(write_file(folder / "secret.txt", "none of theirs"));
   const std::string digest = sha256_of("texels");
-  ExportFacts facts = {.id = "a",
-                       .preset = "glb",
-                       .name = "a",
-                       .title = "a",
-                       .normal = "opengl",
-                       .roughness = "root",
-                       .size = {2, 2}};
+  exchange::ExportFacts facts = {.id = "a",
+                                 .preset = "glb",
+                                 .name = "a",
+                                 .title = "a",
+                                 .normal = "opengl",
+                                 .roughness = "root",
+                                 .size = {2, 2}};
   for (const char* name : {"maps/a.png", "../../session.json"}) {
     facts.files.push_back(
         {.file = name, .sha256 = digest, .bytes = 6, .size = {2, 2}, .encoding = "png, 8 bits"});

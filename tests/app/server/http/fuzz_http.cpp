@@ -8,10 +8,10 @@
 #include <string_view>
 
 #include "app/server/api/bodies/scan_body.h"
-#include "app/server/http/request_headers.h"
 #include "app/server/http/cookies.h"
 #include "app/server/http/error_reply.h"
 #include "app/server/http/request_frame.h"
+#include "app/server/http/request_headers.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace weft::app;

@@ -20,9 +20,9 @@ void AskedSession::SetUpTestSuite() {
   std::filesystem::create_directories(root() / "scans");
   const auto made = simulator::simulate_session(*scene, session(), {});
   ASSERT_TRUE(made) << made.error().message();
-  SessionOptions input;
+  solve::SessionOptions input;
   input.folder = session();
-  const Result<SolveReport> report = solve_session(input, {}, {});
+  const Result<solve::SolveReport> report = solve::solve_session(input, {}, {});
   ASSERT_TRUE(report) << report.error().message();
   solve_ = report->facts;
   maps_ = report->folder;

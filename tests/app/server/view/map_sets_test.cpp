@@ -25,11 +25,11 @@ class MapSets : public AskedSession {
  protected:
   static void SetUpTestSuite() {
     AskedSession::SetUpTestSuite();
-    MapsOptions options;
+    material::MapsOptions options;
     options.session = session();
     options.mm_per_pixel = kGrid_mm;
     options.maps = {"height", "occlusion"};
-    const Result<MapsReport> made = make_maps(options, {});
+    const Result<material::MapsReport> made = material::make_maps(options, {});
     ASSERT_TRUE(made) << made.error().message();
     set_ = json_of(made->facts);
     set_folder_ = made->folder;

@@ -32,9 +32,9 @@ class JobBody : public testing::Test {
       if (name == "satin") return fs::path("/scans/satin.weft");
       return Error{ErrorKind::kNoInput, "there is no such session", name, "", ""};
     };
-    const auto material = [](const std::string& key) -> Result<MaterialPlace> {
-      return key == "own" ? MaterialPlace{"library:own", "/materials/own.toml"}
-                          : MaterialPlace{"library:" + key};
+    const auto material = [](const std::string& key) -> Result<material::MaterialPlace> {
+      return key == "own" ? material::MaterialPlace{"library:own", "/materials/own.toml"}
+                          : material::MaterialPlace{"library:" + key};
     };
     const auto build = [](const std::string& key, const std::string& id) -> Result<fs::path> {
       return fs::path("/materials") / key / (id.empty() ? "newest" : id);
@@ -157,7 +157,7 @@ TEST_F(JobBody, PlansLightsForTheRigOfTheDaemonAndNoOther) {
   planned(
       R"({"kind": "rig_plan", "roughness": 0.25, "f0": 0.5, "albedo": 0.125, "relief_deg": 0, "pace": 3})",
       {"--roughness", "0.25", "--f0", "0.5", "--albedo", "0.125", "--relief", "0", "--pace", "3"});
-  for (const NamedCloth& each : planned_cloths())
+  for (const calibration::NamedCloth& each : calibration::planned_cloths())
     EXPECT_TRUE(read(R"({"kind": "rig_plan", "cloth": ")" + each.name + R"("})")) << each.name;
   EXPECT_EQ(read(R"({"kind": "rig_plan"})")->of, "north");
 
@@ -210,7 +210,7 @@ TEST_F(JobBody, ExportsMapsOfASessionOrABuiltMaterial) {
   EXPECT_EQ(arguments(R"({"kind": "export", "material": "dusty", "presets": ["glb"]})"),
             (Words{"export", "/materials/dusty/newest", "--preset", "glb"}));
   EXPECT_EQ(arguments(R"({"kind": "material", "material": "cotton"})"),
-            (Words{"material", "build", "--output", (user_materials_folder() / "build").string(),
+            (Words{"material", "build", "--output", (material::user_materials_folder() / "build").string(),
                    "library:cotton"}));
   EXPECT_EQ(arguments(R"({"kind": "material", "material": "own"})"),
             (Words{"material", "build", "/materials/own.toml"}));

@@ -24,8 +24,8 @@ class MaterialBody : public testing::Test {
  protected:
   void SetUp() override {
     setenv("XDG_DATA_HOME", scratch_.path().c_str(), 1);
-    fs::create_directories(user_materials_folder());
-    ASSERT_TRUE(write_file(user_materials_folder() / "dusty.toml", R"(schema = "weft.material/1"
+    fs::create_directories(material::user_materials_folder());
+    ASSERT_TRUE(write_file(material::user_materials_folder() / "dusty.toml", R"(schema = "weft.material/1"
 inherits = "library:cloth/wool"
 [[layer]]
 name = "dust"
@@ -40,14 +40,14 @@ mask = 0.25
   void TearDown() override { unsetenv("XDG_DATA_HOME"); }
 
   static Result<NewMaterialBody> read(const std::string& body) {
-    return read_material_body(Json::parse(body), user_materials_folder());
+    return read_material_body(Json::parse(body), material::user_materials_folder());
   }
   static std::string layers_of(const std::string& key) {
-    const Result<ResolvedMaterial> resolved =
-        resolve_material(library_material(key).value(), materials_on_disk());
+    const Result<material::ResolvedMaterial> resolved =
+        material::resolve_material(library_material(key).value(), material::materials_on_disk());
     if (!resolved) return resolved.error().message();
     std::string words;
-    for (const MaterialLayer& layer : resolved->layers) {
+    for (const material::MaterialLayer& layer : resolved->layers) {
       const auto alpha = layer.values.find("alpha");
       words += layer.name + " " + (alpha == layer.values.end() ? "-" : alpha->second.value.dump()) + "; ";
     }
@@ -61,7 +61,7 @@ TEST_F(MaterialBody, BecomesAFileThatInheritsWithItsLayersInTheirOrder) {
   const Result<NewMaterialBody> made = read(
       R"({"name": "clean", "inherits": "dusty", "layers": [{"name": "stain", "alpha": 0.75}, {"name": "dust"}]})");
   ASSERT_TRUE(made) << made.error().message();
-  EXPECT_EQ(made->file, user_materials_folder() / "clean.toml");
+  EXPECT_EQ(made->file, material::user_materials_folder() / "clean.toml");
   EXPECT_FALSE(fs::exists(made->file)) << "nothing is written";
   ASSERT_TRUE(write_file(made->file, made->text));
   EXPECT_THAT(layers_of("dusty"), HasSubstr("dust")) << "the other stays as it was";
