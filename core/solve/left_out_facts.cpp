@@ -4,7 +4,7 @@
 namespace weft {
 
 void describe(Fields& fields, LeftOutShares& s) {
-  fields.value({"median", "Of |error| / reading, a share", {}, kMustSay}, s.median);
+  fields.value({"median", "Size of the error over the reading, a share", {}, kMustSay}, s.median);
   fields.value({"rms", "Of error / brightness of the pixel, a share", {}, kMustSay}, s.rms);
   fields.value({"noise_median", "The same as noise alone would give it"}, s.noise_median);
   fields.value({"noise_rms", "The same as noise alone would give it"}, s.noise_rms);

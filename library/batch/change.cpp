@@ -60,7 +60,7 @@ void describe(Fields& fields, MapChange& c) {
   fields.value({"median_deg", "The same", {}, kMustSay}, c.median_deg);
   fields.value({"p95_deg", "The same: its 95th percentile", {}, kMustSay}, c.p95_deg);
   fields.value({"max_deg", "The same", {}, kMustSay}, c.max_deg);
-  fields.value({"albedo_rel", "Mean of |new - old| / old", {}, kMustSay}, c.albedo_rel);
+  fields.value({"albedo_rel", "Mean size of the change over the old albedo", {}, kMustSay}, c.albedo_rel);
   fields.value({"albedo_bias_rel", "Mean of (new - old) / old", {}, kMustSay}, c.albedo_bias_rel);
   fields.object({"unsolved", "Shares of pixels", {}, kMustSay}, c.unsolved);
   fields.object({"worst", "The square that turned most", {}, kMustSay}, c.worst);
