@@ -62,7 +62,7 @@ weft_precompile(weft_precompiled_tests
 
 # Where jobs and not mathematics stand (docs/architecture.md). Nothing of it is measured: time to compile is worth more
 # than speed, and sanitizers watch it.
-set(WEFT_UPPER_HALVES "^(calibration/(guide|run)|exchange/export|library/(import|run)|material/(assets|read|run)|solve/(files|input|report|run|session))$")
+set(WEFT_UPPER_HALVES "^(calibration/(guide|run)|exchange/export|library/(chain|import|run)|material/(assets|read|run)|solve/(files|input|report|run|session))$")
 
 # weft_library(NAME DEPENDS ... SOURCES ...): one folder, one target. PLAIN: without the precompiled headers, for C and
 # for what is compiled with other options. APART: each file by itself. With WEFT_BUILT a library that no sanitizer is to

@@ -14,10 +14,12 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
+#include "core/base/files.h"
 #include "exchange/export/export.h"
 #include "exchange/export/export_price.h"
 #include "exchange/export/export_request.h"
 #include "exchange/export/preset_files.h"
+#include "library/chain/make.h"
 
 namespace weft::app {
 namespace {
@@ -84,10 +86,24 @@ void print_report(const exchange::ExportReport& report) {
   for (const std::string& text : facts.notes) print("  " + text);
 }
 
+// Whoever names maps, or is content with a draft, gets what there is.
+Result<void> make_maps_first(exchange::ExportOptions& options, const JobContext& context,
+                             const library::TellStep& tell) {
+  if (!is_there(options.input / "session.json") || !options.maps.empty() || options.is_draft) return {};
+  Result<std::filesystem::path> made = library::make_maps_first(options.input, context, tell);
+  if (!made) return std::move(made).error();
+  if (!made->empty()) options.maps = made->filename().string();
+  return {};
+}
+
 Result<int> run_export(const exchange::ExportRequest& a, const CommonArguments& common) {
-  const Result<std::vector<exchange::ExportReport>> reports = [&] {
+  exchange::ExportOptions options = a.options;
+  const Result<std::vector<exchange::ExportReport>> reports =
+      [&]() -> Result<std::vector<exchange::ExportReport>> {
     ProgressLine line(common.quiet);
-    return exchange::export_maps(a.options, {common.threads, stop_on_signal(), line.callback()});
+    const JobContext context = {common.threads, stop_on_signal(), line.callback()};
+    if (Result<void> ok = make_maps_first(options, context, line.teller()); !ok) return std::move(ok).error();
+    return exchange::export_maps(options, context);
   }();
   if (!reports) return reports.error();
   Json exports = Json::array();

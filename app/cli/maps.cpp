@@ -10,6 +10,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
+#include "library/chain/make.h"
 #include "material/run/maps_price.h"
 #include "material/run/maps_request.h"
 #include "material/run/session_sets.h"
@@ -68,14 +69,27 @@ Result<int> explain(material::MapsRequest& arguments, const CommonArguments& com
   return kDone;
 }
 
+// Whoever names a solve, or is content with a draft, gets what there is.
+Result<void> make_solve_first(material::MapsOptions& options, const JobContext& context,
+                              const library::TellStep& tell) {
+  if (!options.solve.empty() || options.is_draft || options.is_preview) return {};
+  Result<std::string> made = library::make_solve_first(options.session, context, tell);
+  if (!made) return std::move(made).error();
+  options.solve = std::move(*made);
+  return {};
+}
+
 Result<int> make(const material::MapsRequest& arguments, const CommonArguments& common) {
   Result<material::Recipe> recipe = arguments.asked_recipe();
   if (!recipe) return std::move(recipe).error();
   material::MapsOptions options = arguments.maps;
   options.recipe = std::move(*recipe);
-  const Result<material::MapsReport> report = [&] {
+  const Result<material::MapsReport> report = [&]() -> Result<material::MapsReport> {
     ProgressLine line(common.quiet);
-    return material::make_maps(options, {common.threads, stop_on_signal(), line.callback()});
+    const JobContext context = {common.threads, stop_on_signal(), line.callback()};
+    if (Result<void> ok = make_solve_first(options, context, line.teller()); !ok)
+      return std::move(ok).error();
+    return material::make_maps(options, context);
   }();
   if (!report) return report.error();
   if (common.json) {

@@ -88,6 +88,16 @@ void ProgressLine::update(std::string_view phase, double share) {
   draw(share, now);
 }
 
+std::function<void(const std::string&)> ProgressLine::teller() {
+  return [this](const std::string& step) {
+    const std::scoped_lock lock(mutex_);
+    if (quiet_) return;
+    if (terminal_ && drawn_) write_all(stderr, "\r\x1b[K");
+    drawn_ = false;
+    note(step);
+  };
+}
+
 void ProgressLine::draw(double share, Clock::time_point now) {
   drawn_ = true;
   const double seconds = std::chrono::duration<double>(now - phase_began_).count();

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -29,6 +30,8 @@ class ProgressLine {
   ~ProgressLine();
   void update(std::string_view phase, double share);
   Progress callback();
+  /// Says on a line of its own, above the bar, what is done next.
+  std::function<void(const std::string& step)> teller();
 
  private:
   using Clock = std::chrono::steady_clock;

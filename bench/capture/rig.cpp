@@ -91,11 +91,15 @@ struct ShotLoop {
 
 Result<Json> ask(capture::WorkerProcess& worker, const Json& request, steady_clock::duration patience) {
   if (Result<void> sent = worker.send(request.dump()); !sent) return std::move(sent).error();
-  const Result<std::string> line = worker.read_line(steady_clock::now() + patience);
-  if (!line) return line.error();
-  const Json answer = Json::parse(*line, nullptr, false);
-  if (answer.is_object() && answer.contains("ok")) return answer["ok"];
-  return error_of_json(answer.is_object() ? answer.value("error", Json()) : Json(), "weft-camera");
+  const auto by = steady_clock::now() + patience;
+  for (;;) {  // an answer stands behind lines of what the program does meanwhile
+    const Result<std::string> line = worker.read_line(by);
+    if (!line) return line.error();
+    const Json answer = Json::parse(*line, nullptr, false);
+    if (!answer.is_object()) return error_of_json(answer, "weft-camera");
+    if (answer.contains("ok")) return answer["ok"];
+    if (answer.contains("error")) return error_of_json(answer["error"], "weft-camera");
+  }
 }
 
 Result<void> add_bare(const ShotLoop& loop, const fs::path& home, std::vector<double>& seconds) {

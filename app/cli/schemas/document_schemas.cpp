@@ -13,6 +13,7 @@
 #include "exchange/presets/export_facts.h"
 #include "library/batch/outcome.h"
 #include "library/batch/plan.h"
+#include "library/chain/chain.h"
 #include "library/import/photographs_import.h"
 #include "library/run/merge_batch.h"
 #include "material/run/map_set_facts.h"
@@ -53,6 +54,8 @@ const std::vector<DocumentSchema>& document_schemas() {
        fields_of<material::RectifyFacts>},
       {"weft.maps", "maps.json: a set of maps", fields_of<material::MapSetFacts>},
       {"weft.export", "export.json: the files of a preset", fields_of<exchange::ExportFacts>},
+      {"weft.chain", "What a session has from photographs to exports, and how fresh it is",
+       fields_of<library::Chain>},
       {"weft.batch", "The first line of a plan", fields_of<library::BatchHeader>},
       {"weft.batch-session", "A line of a plan: a session that is solved", fields_of<library::PlannedSolve>,
        false},

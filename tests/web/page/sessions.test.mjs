@@ -180,6 +180,24 @@ test('one session shows its photographs and solves, and no change of somebody el
   await visitor.leave();
 });
 
+test('one button makes the maps and the export of a scan that has but a preview', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor, `sessions/${scanned}`);
+  const chain = page.getByRole('region', {name: 'From photographs to files'});
+  const rowOfChain = (name) => chain.getByRole('listitem').filter({has: page.getByText(name, {exact: true})});
+  await rowOfChain('photographs').getByText('● fresh').waitFor();
+  await rowOfChain('solve').getByText('a preview has half the size and no masks').waitFor();
+  await rowOfChain('maps').getByText('none were made').waitFor();
+  await chain.getByLabel('Export for').selectOption('png16');
+  await chain.getByRole('button', {name: 'Make it final'}).click();
+  for (const name of ['solve', 'maps', 'export']) await rowOfChain(name).getByText('● fresh').waitFor({timeout: 120000});
+  assert.match(await rowOfChain('export').innerText(), /png16, of (fast|standard|robust|reference), [0-9.]+ degrees on [0-9]+ % of the cloth/);
+  await chain.getByText('All of it is fresh.').waitFor();
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'session_chain');
+  await visitor.leave();
+});
+
 test('twenty edits are undone after the daemon was restarted', async () => {
   const visitor = await visit(browser, rig);
   visitor.mayFail(/net::ERR_/);

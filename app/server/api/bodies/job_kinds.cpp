@@ -20,6 +20,7 @@
 #include "calibration/run/update.h"
 #include "capture/scan/copy_request.h"
 #include "exchange/export/export_request.h"
+#include "library/chain/make.h"
 #include "library/run/plan_batch.h"
 #include "library/run/run_batch.h"
 #include "material/assets/build_request.h"
@@ -221,6 +222,7 @@ const std::vector<JobKind>& job_kinds() {
        {walk<solve::PriceRequest>}},
       {"rectify", "Rectified maps", {"rectify"}, {walk<material::RectifyOptions>}},
       {"copy", "Second copy", {"copy"}, {walk<capture::CopyRequest>}, add_copy_place},
+      {"make", "Maps and exports, made final", {"make"}, {walk<library::MakeOptions>}},
       {"torture", "Torture scene", {"torture"}, {walk<simulator::TortureRequest>}, add_torture_place},
       {"rig_plan",
        "Which light to add",

@@ -9,6 +9,7 @@
 #include "core/describe/field_json.h"
 #include "core/solve/solve.h"
 #include "library/catalogue/session_files.h"
+#include "library/chain/chain.h"
 #include "material/read/compare.h"
 #include "solve/session/current.h"
 
@@ -48,6 +49,12 @@ Result<Reply> solves(const RigParts& parts, const Call& call) {
   std::ranges::reverse(list);
   return json_reply(
       {{"solves", std::move(list)}, {"truth", is_there(session->folder / kTruth / "normal.exr")}});
+}
+
+Result<Reply> chain(const RigParts& parts, const Call& call) {
+  const Result<Session> session = parts.library.session(call.segments.at(0));
+  if (!session) return session.error();
+  return json_reply(json_of(library::chain_of(*session)));
 }
 
 Result<Reply> one_solve(const RigParts& parts, const Call& call) {
@@ -110,6 +117,7 @@ Resource solves_resource(const RigParts& parts) {
   const std::string one = of + "/{solve}";
   Resource resource = {
       {{"GET", of, [&parts](const Call& call) { return solves(parts, call); }},
+       {"GET", "/api/v1/sessions/{name}/chain", [&parts](const Call& call) { return chain(parts, call); }},
        {"GET", one, [&parts](const Call& call) { return one_solve(parts, call); }},
        {"GET", one + "/report", [&parts](const Call& call) { return report_of_solve(parts, call); }},
        {"GET", "/api/v1/compare", [&parts](const Call& call) { return compare(parts, call); }, false,

@@ -4931,6 +4931,50 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sessions/{name}/chain": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What a session has from photographs to exports, and how fresh it is; the job make makes the rest */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["Chain"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                421: components["responses"]["ForeignHost"];
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sessions/{name}/solves/{solve}": {
         parameters: {
             query?: never;
@@ -6454,6 +6498,37 @@ export interface components {
             /** @description The session is simulated: truth stands for a solve */
             truth: boolean;
         };
+        Chain: {
+            schema: string;
+            /** @description Its folder */
+            session: string;
+            fabric: string;
+            links: components["schemas"]["ChainLink"][];
+        };
+        ChainLink: {
+            /** @enum {string} */
+            name: "photographs" | "solve" | "maps" | "export";
+            /**
+             * @description draft: of a preview; stale: another would be made today
+             * @enum {string}
+             */
+            freshness: "missing" | "draft" | "stale" | "fresh";
+            /** @description What it is, in a line */
+            says: string;
+            /** @description Of a solve or maps; of an export its preset */
+            id?: string;
+            folder?: string;
+            /** @description When; ISO 8601 */
+            written?: string;
+            /** @description Of the solve that it is, or is made of */
+            level?: string;
+            /** @description Mean error of the normals to expect, degrees */
+            mean_deg?: number;
+            /** @description Share of the cloth that has a normal */
+            solved?: number;
+            /** @description Why it is not fresh */
+            why?: string[];
+        };
         SolveSummary: {
             id: string;
             /** @description Others are made of it */
@@ -6910,6 +6985,24 @@ export interface components {
             request_id?: string;
             /** @description Session folder, NAME.weft: its name */
             session: string;
+        };
+        /** Maps and exports, made final */
+        MakeJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "make";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Session folder, NAME.weft: its name */
+            session: string;
+            /** @description Of the solve: the best level that takes so many seconds; default the level that its price recommends */
+            within_s?: number;
+            /** @description Of the solve: the cheapest level expected to be so many degrees off at most */
+            to_deg?: number;
+            /** @description Name of a preset of weft export --list; default those that were exported before */
+            presets?: string[];
         };
         /** Torture scene */
         TortureJob: {
@@ -7609,7 +7702,7 @@ export interface components {
             /** @description That a session may hold, else it is lost alone: 1500M, 2G */
             memory_mb?: number;
         };
-        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["TortureJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
+        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
     };
     responses: {
         /** @description Not a request that can be read */

@@ -66,7 +66,7 @@ export function CurrentMaps({session}: {session: string}) {
   );
 }
 
-/** All maps of the best solve of today's photographs, which is made where there are previews alone; or a draft. */
+/** All maps of the best solve of today's photographs, which the job makes where there are previews alone; or a draft. */
 export function MakeMaps({session, onMade}: {session: string; onMade?: () => void}) {
   useJobs();
   const [of, setOf] = useState<Schemas['Session'] | null>(null);
@@ -76,10 +76,7 @@ export function MakeMaps({session, onMade}: {session: string; onMade?: () => voi
     return onEvent('job', (job) => job.of === session && job.kind === 'solve' && job.state === 'done' && ask());
   }, [session]);
   useEffect(() => onEvent('job', (job) => job.of === session && job.kind === 'maps' && job.state === 'done' && onMade?.()), [session]);
-  const make = useAction(async () => {
-    if (of?.maps_of == null) await queueJob({kind: 'solve', session, quality: 'standard'});
-    await queueJob({kind: 'maps', session});
-  });
+  const make = useAction(() => queueJob({kind: 'maps', session}));
   const draft = useAction(() => queueJob({kind: 'maps', session, draft: true}));
   const mine = jobs.value.filter((job) => job.of === session && (job.kind === 'maps' || job.kind === 'solve'));
   const running = mine.find((job) => !hasEnded(job));
@@ -100,5 +97,5 @@ export function MakeMaps({session, onMade}: {session: string; onMade?: () => voi
 
 function sourceInWords({maps_of, current_solve}: Schemas['Session']): string {
   if (maps_of) return [`They are made of the ${maps_of.level} solve ${maps_of.solve.slice(0, 8)}.`, ...maps_of.stale.map((why) => `But ${why}.`)].join(' ');
-  return current_solve === '' ? 'It is solved at standard first.' : 'Today’s photographs have no solve that is better than a preview: they are solved at standard first.';
+  return current_solve === '' ? 'It is solved first.' : 'Today’s photographs have no solve that is better than a preview: they are solved first.';
 }

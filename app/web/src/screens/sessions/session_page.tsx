@@ -13,6 +13,7 @@ import {counted} from '../../ui/say';
 import {bytesOf, timeOf} from '../../ui/words';
 import {setInWords, useSets} from '../viewer/sets';
 import {addressOfViewer} from '../viewer/sight';
+import {ChainPanel} from './chain_panel';
 import {Frames} from './frames';
 import {LastWord} from './last_word';
 import {MetadataForm} from './metadata_form';
@@ -55,6 +56,7 @@ export function SessionPage({name}: {name: string}) {
       <Complaint error={complaint} />
       {one && <Facts one={one} />}
       {one && <Warnings one={one} />}
+      {one && <ChainPanel session={name} revision={one} />}
       {one && (
         <div class="columns">
           <div class="column">

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// From photographs to exports: what there is, how fresh, and one button that makes the rest.
+import {useEffect, useState} from 'preact/hooks';
+import {answer, api, type ApiError, asApiError, type Schemas} from '../../api/client';
+import {useAction} from '../../ui/action';
+import {Button} from '../../ui/button';
+import {Choice} from '../../ui/choice';
+import {Complaint} from '../../ui/complaint';
+import {Mark, type Verdict} from '../../ui/mark';
+import {useLatest} from '../../ui/use_latest';
+import {timeOf} from '../../ui/words';
+import {jobs, queueJob, useJobs} from '../jobs/jobs';
+import {hasEnded} from '../jobs/queue';
+import {JobLine} from '../material/job_line';
+import {addressOfViewer} from '../viewer/sight';
+
+type Link = Schemas['ChainLink'];
+
+const verdicts: Record<Link['freshness'], Verdict> = {fresh: 'fine', draft: 'warning', stale: 'warning', missing: 'waiting'};
+
+/** Exports are made again where there are some; a preset adds one. */
+const asBefore = '';
+
+export function ChainPanel({session, revision}: {session: string; revision: unknown}) {
+  useJobs();
+  const [links, setLinks] = useState<readonly Link[]>([]);
+  const [presets, setPresets] = useState<readonly string[]>([]);
+  const [preset, setPreset] = useState(asBefore);
+  const [complaint, complain] = useState<ApiError | null>(null);
+  useLatest((latest) => {
+    latest(answer(api.GET('/api/v1/sessions/{name}/chain', {params: {path: {name: session}}}))).then(
+      (chain) => (setLinks(chain.links), complain(null)),
+      (error: unknown) => complain(asApiError(error)),
+    );
+  }, [session, revision]);
+  useEffect(() => {
+    answer(api.GET('/api/v1/presets')).then((list) => setPresets(list.presets.map(({name}) => name)), () => {});
+  }, []);
+  const make = useAction(() => queueJob({kind: 'make', session, ...(preset !== asBefore && {presets: [preset]})}));
+  const job = jobs.value.find(({kind, of}) => kind === 'make' && of === session);
+  const isRunning = job !== undefined && !hasEnded(job);
+  const isFinal = links.every(({name, freshness}) => freshness === 'fresh' || (name === 'export' && freshness === 'missing'));
+  return (
+    <section class="panel chain" aria-labelledby="chain-title">
+      <h2 id="chain-title">From photographs to files</h2>
+      <ol>{links.map((link) => <Row key={`${link.name} ${link.folder}`} session={session} link={link} />)}</ol>
+      <div class="row">
+        <Choice
+          label="Export for"
+          value={preset}
+          options={[{value: asBefore, says: 'what was exported before'}, ...presets.map((name) => ({value: name, says: name}))]}
+          onChange={setPreset}
+          says="Files that the chain ends with"
+        />
+        <Button kind="main" isDisabled={make.isBusy || isRunning || (isFinal && preset === asBefore)} onClick={() => void make.run()}>Make it final</Button>
+        {isFinal && <span class="dim">All of it is fresh.</span>}
+      </div>
+      {job && <JobLine job={job} />}
+      <Complaint error={complaint ?? make.complaint} />
+    </section>
+  );
+}
+
+function Row({session, link}: {session: string; link: Link}) {
+  const address = addressOf(session, link);
+  return (
+    <li>
+      <span class="name">{address ? <a href={address}>{link.name}</a> : link.name}</span>
+      <Mark verdict={verdicts[link.freshness]}>{link.freshness}</Mark>
+      <span>{link.says}{(link.why ?? []).map((why) => <span key={why} class="dim"> {why}</span>)}</span>
+      {link.written && <span class="dim numbers">{timeOf(link.written)}</span>}
+    </li>
+  );
+}
+
+function addressOf(session: string, {name, id, freshness}: Link): string | null {
+  if (!id || freshness === 'missing') return null;
+  if (name === 'solve') return `/viewer/${session}/${id}`;
+  if (name === 'maps') return addressOfViewer({session, solve: id, isSet: true});
+  return null;
+}

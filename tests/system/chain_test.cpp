@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// From photographs to exports: what weft status says of a session, and what weft make makes of it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/base/files.h"
+#include "core/rig/session.h"
+#include "core/solve/solve_record.h"
+#include "tests/system/program.h"
+#include "tests/system/samples.h"
+#include "tests/system/workspace.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+class Chain : public testing::Test {
+ protected:
+  Chain() {
+    setenv("XDG_CACHE_HOME", (work_ / "cache").c_str(), 1);
+    setenv("XDG_STATE_HOME", (work_ / "state").c_str(), 1);
+  }
+  ~Chain() override {
+    for (const char* name : {"XDG_CACHE_HOME", "XDG_STATE_HOME"}) unsetenv(name);
+  }
+  void SetUp() override { simulate(scene_named("twill", {192, 128}), session_); }
+
+  // In the folder that holds the session, as a person types it.
+  Outcome weft(const std::string& line) const {
+    std::istringstream words(line);
+    std::vector<std::string> arguments;
+    for (std::string word; words >> word;) arguments.push_back(word);
+    return run_weft(arguments, {.folder = work_.path()});
+  }
+  Json json_of(const std::string& line) const {
+    const Outcome outcome = weft(line + " --json -q");
+    EXPECT_EQ(outcome.exit_code, 0) << line << ": " << outcome.error;
+    return Json::parse(outcome.output, nullptr, false);
+  }
+  Json links() const { return json_of("status cloth.weft")["sessions"][0]["links"]; }
+  static std::vector<std::string> freshness_of(const Json& links) {
+    std::vector<std::string> all;
+    for (const Json& link : links) all.push_back(link["freshness"]);
+    return all;
+  }
+  std::vector<std::string> freshness() const { return freshness_of(links()); }
+  std::string why(std::size_t link) const { return links()[link].value("why", Json::array()).dump(); }
+  static std::vector<std::string> names_of(const Json& report) {
+    std::vector<std::string> all;
+    for (const Json& made : report["made"]) all.push_back(made["name"]);
+    return all;
+  }
+  // As the camera took the first lit shot once more.
+  void photograph_again() const {
+    edit_json(session_ / "session.json", [&](Json& json) {
+      const int index = static_cast<int>(json["shots"].size());
+      for (Json& shot : json["shots"]) {
+        if (shot["role"] != "lit") continue;
+        Json again = shot;
+        shot["superseded_by"] = index;
+        again["index"] = index;
+        again["file"] = "raw/again.dng";
+        fs::copy(session_ / shot["file"].get<std::string>(), session_ / "raw/again.dng");
+        json["shots"].push_back(again);
+        return;
+      }
+    });
+  }
+
+  Workspace work_;
+  const fs::path session_ = work_ / "cloth.weft";
+};
+
+TEST_F(Chain, IsMadeToItsEndAndNothingTwice) {
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "missing", "missing", "missing"));
+  ASSERT_EQ(weft("solve cloth.weft --quality preview --no-previews -q").exit_code, 0);
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "draft", "missing", "missing"));
+  EXPECT_EQ(weft("status cloth.weft --strict").exit_code, 2);
+
+  const Json foretold = json_of("make cloth.weft --preset png16 --explain");
+  EXPECT_EQ(foretold["steps"].size(), 3U) << foretold["steps"];
+  EXPECT_THAT(foretold["made"], IsEmpty());
+  EXPECT_FALSE(fs::exists(session_ / "maps"));
+
+  const Json made = json_of("make cloth.weft --preset png16");
+  EXPECT_THAT(names_of(made), ElementsAre("solve", "maps", "export"));
+  EXPECT_THAT(freshness_of(made["chain"]["links"]), ElementsAre("fresh", "fresh", "fresh", "fresh"));
+  EXPECT_NE(made["chain"]["links"][1]["level"], "preview");
+  EXPECT_GT(made["chain"]["links"][3]["mean_deg"], 0.0) << "the error of the solve that the files are of";
+  EXPECT_TRUE(fs::exists(session_ / "export/png16/export.json"));
+  EXPECT_EQ(weft("status cloth.weft --strict").exit_code, 0);
+
+  const Json again = json_of("make cloth.weft");
+  EXPECT_THAT(again["steps"], IsEmpty());
+  EXPECT_EQ(again["chain"], made["chain"]);
+  EXPECT_THAT(weft("make cloth.weft").output, HasSubstr("nothing to make"));
+}
+
+TEST_F(Chain, IsStaleFromTheFirstThingThatChangedAndMadeAgainFromThere) {
+  json_of("make cloth.weft --preset png16");
+  photograph_again();
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "stale", "stale", "stale"));
+  for (const std::size_t link : {1U, 2U, 3U}) EXPECT_THAT(why(link), HasSubstr("was photographed again since"));
+  EXPECT_THAT(names_of(json_of("make cloth.weft")), ElementsAre("solve", "maps", "export"));
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "fresh", "fresh", "fresh"));
+
+  fs::remove_all(session_ / "maps");
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "fresh", "missing", "stale"));
+  EXPECT_THAT(names_of(json_of("make cloth.weft")), ElementsAre("maps"))
+      << "the same maps have the same id, and the export is of them";
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "fresh", "fresh", "fresh"));
+}
+
+TEST_F(Chain, SaysThatTheSolverOrTheCalibrationIsAnotherSince) {
+  json_of("make cloth.weft");
+  const fs::path solve = fs::path(links()[1]["folder"].get<std::string>()) / "solve.json";
+  edit_json(solve, [](Json& json) { json["solver_version"] = kSolverVersion - 1; });
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "stale", "stale", "missing"));
+  EXPECT_THAT(why(1), HasSubstr("version " + std::to_string(kSolverVersion - 1) + " of the solver made it"));
+  edit_json(solve, [](Json& json) {
+    json["solver_version"] = kSolverVersion;
+    json["input"]["calibration"] = std::string(64, 'a');
+  });
+  fs::last_write_time(session_ / "calibration/calibration.json",
+                      fs::last_write_time(solve) + std::chrono::seconds(1));
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "stale", "stale", "missing"));
+  EXPECT_THAT(why(1), HasSubstr("and it was made with aaaaaaaaaaaa"));
+}
+
+TEST_F(Chain, IsRefusedBeforeAnythingIsMade) {
+  const Outcome no_preset = weft("make cloth.weft --preset png61");
+  EXPECT_EQ(no_preset.exit_code, 66);
+  EXPECT_THAT(no_preset.error, HasSubstr("png16"));
+  const Outcome too_good = weft("make cloth.weft --to 0.0001");
+  EXPECT_EQ(too_good.exit_code, 64);
+  EXPECT_THAT(too_good.error, HasSubstr("no level is that good"));
+  EXPECT_EQ(weft("make nowhere.weft").exit_code, 66);
+  EXPECT_FALSE(fs::exists(session_ / "solve"));
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "missing", "missing", "missing"));
+}
+
+TEST_F(Chain, IsMadeAsFarAsMapsAndExportsNeedIt) {
+  const Outcome exported = weft("export cloth.weft --preset png16");
+  EXPECT_EQ(exported.exit_code, 0) << exported.error;
+  EXPECT_THAT(exported.error, HasSubstr("solve it at "));
+  EXPECT_THAT(exported.error, HasSubstr("make its maps"));
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "fresh", "fresh", "fresh"));
+
+  fs::remove_all(session_ / "solve");
+  fs::remove_all(session_ / "maps");
+  const Outcome maps = weft("maps cloth.weft --maps height");
+  EXPECT_EQ(maps.exit_code, 0) << maps.error;
+  EXPECT_THAT(maps.error, HasSubstr("solve it at "));
+  EXPECT_THAT(weft("maps cloth.weft --maps height").error, Not(HasSubstr("solve it at ")));
+}
+
+}  // namespace
+}  // namespace weft::test
