@@ -95,7 +95,7 @@ export function MakeMaps({session, onMade}: {session: string; onMade?: () => voi
   );
 }
 
-function sourceInWords({maps_of, current_solve}: Schemas['Session']): string {
+function sourceInWords({maps_of}: Schemas['Session']): string {
   if (maps_of) return [`They are made of the ${maps_of.level} solve ${maps_of.solve.slice(0, 8)}.`, ...maps_of.stale.map((why) => `But ${why}.`)].join(' ');
-  return current_solve === '' ? 'It is solved first.' : 'Today’s photographs have no solve that is better than a preview: they are solved first.';
+  return 'Today’s photographs have no solve that is better than a preview: they are solved first.';
 }

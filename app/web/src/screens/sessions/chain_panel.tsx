@@ -12,7 +12,6 @@ import {timeOf} from '../../ui/words';
 import {jobs, queueJob, useJobs} from '../jobs/jobs';
 import {hasEnded} from '../jobs/queue';
 import {JobLine} from '../material/job_line';
-import {addressOfViewer} from '../viewer/sight';
 
 type Link = Schemas['ChainLink'];
 
@@ -50,7 +49,6 @@ export function ChainPanel({session, revision}: {session: string; revision: unkn
           value={preset}
           options={[{value: asBefore, says: 'what was exported before'}, ...presets.map((name) => ({value: name, says: name}))]}
           onChange={setPreset}
-          says="Files that the chain ends with"
         />
         <Button kind="main" isDisabled={make.isBusy || isRunning || (isFinal && preset === asBefore)} onClick={() => void make.run()}>Make it final</Button>
         {isFinal && <span class="dim">All of it is fresh.</span>}
@@ -61,21 +59,15 @@ export function ChainPanel({session, revision}: {session: string; revision: unkn
   );
 }
 
-function Row({session, link}: {session: string; link: Link}) {
-  const address = addressOf(session, link);
+function Row({session, link: {name, id, freshness, says, why = [], written}}: {session: string; link: Link}) {
   return (
     <li>
-      <span class="name">{address ? <a href={address}>{link.name}</a> : link.name}</span>
-      <Mark verdict={verdicts[link.freshness]}>{link.freshness}</Mark>
-      <span>{link.says}{(link.why ?? []).map((why) => <span key={why} class="dim"> {why}</span>)}</span>
-      {link.written && <span class="dim numbers">{timeOf(link.written)}</span>}
+      <span>{name}</span>
+      <Mark verdict={verdicts[freshness]}>{freshness}</Mark>
+      <span>{says} <span class="dim">{why.join('; ')}</span></span>
+      {written && <span class="dim numbers">{timeOf(written)}</span>}
+      {id && name === 'solve' && <a href={`/viewer/${session}/${id}?panel=finish`}>Finish its maps</a>}
+      {id && name === 'maps' && <a href={`/material/${session}/maps/${id}`}>As a material</a>}
     </li>
   );
-}
-
-function addressOf(session: string, {name, id, freshness}: Link): string | null {
-  if (!id || freshness === 'missing') return null;
-  if (name === 'solve') return `/viewer/${session}/${id}`;
-  if (name === 'maps') return addressOfViewer({session, solve: id, isSet: true});
-  return null;
 }

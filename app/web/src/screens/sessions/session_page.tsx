@@ -8,11 +8,7 @@ import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
-import {Mark} from '../../ui/mark';
-import {counted} from '../../ui/say';
-import {bytesOf, timeOf} from '../../ui/words';
-import {setInWords, useSets} from '../viewer/sets';
-import {addressOfViewer} from '../viewer/sight';
+import {timeOf} from '../../ui/words';
 import {ChainPanel} from './chain_panel';
 import {Frames} from './frames';
 import {LastWord} from './last_word';
@@ -61,7 +57,6 @@ export function SessionPage({name}: {name: string}) {
         <div class="columns">
           <div class="column">
             <Solves one={one} onChanged={look} />
-            {one.session.current_solve && <MapSets session={name} solve={one.session.current_solve} />}
             <section class="panel" aria-labelledby="frames-title">
               <h2 id="frames-title">Photographs</h2>
               <Frames session={one.session} onChanged={look} />
@@ -108,29 +103,6 @@ function Warnings({one: {session}}: {one: OneSession}) {
     <section class="panel warnings" aria-labelledby="warnings-title">
       <h2 id="warnings-title">Warnings</h2>
       <ul>{session.warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>
-    </section>
-  );
-}
-
-/** What was made of the solves of a session: sets of maps, and the way to more. */
-function MapSets({session, solve}: {session: string; solve: string}) {
-  const sets = useSets(session).filter(({preview}) => !preview);
-  return (
-    <section class="panel" aria-labelledby="sets-title">
-      <h2 id="sets-title">Maps</h2>
-      <ul class="solves">
-        {sets.map((set) => (
-          <li key={set.id}>
-            <a class="button" href={addressOfViewer({session, solve: set.id, isSet: true})}>Look at them</a>
-            <a class="button" href={`/material/${session}/maps/${set.id}`}>As a material</a>
-            <span><strong>{setInWords(set)}</strong> <span class="dim numbers">{set.width} × {set.height}, {timeOf(set.created)}, {bytesOf(set.bytes)}</span></span>
-            {set.draft && <Mark verdict="warning">draft</Mark>}
-            {set.stale.map((why) => <Mark key={why} verdict="warning">stale: {why}</Mark>)}
-            {set.warnings.length > 0 && <Mark verdict="warning">{counted(set.warnings.length, 'warning')}</Mark>}
-          </li>
-        ))}
-      </ul>
-      <a href={`/viewer/${session}/${solve}?panel=finish`}>Finish them: flatten, straighten, tile, repair</a>
     </section>
   );
 }
