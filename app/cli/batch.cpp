@@ -261,7 +261,7 @@ int code_of_all(const std::vector<ErrorKind>& kinds, int otherwise) {
 }
 
 int code_of(const library::RunBatchReport& report) {
-  if (report.was_stopped) return kTryAgainError;
+  if (report.was_stopped) return is_stopped_by_hand() ? kInterruptedError : kTryAgainError;
   if (!report.losses.empty()) return code_of_all(report.losses, kTryAgainError);
   if (!report.failures.empty()) return code_of_all(report.failures, kBadDataError);
   return kDone;

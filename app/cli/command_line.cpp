@@ -12,9 +12,11 @@
 
 #include "app/cli/command_parser.h"
 #include "app/cli/exit_code.h"
+#include "app/cli/help_format.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "core/base/process.h"
+#include "core/describe/error_json.h"
 #include "core/describe/fields.h"
 
 namespace weft::app {
@@ -30,17 +32,29 @@ void add_common(Options& options, CommonArguments& common) {
       .in_range(0, 1024);
 }
 
-// To the program that started weft, for which no option could be read yet.
-void tell_usage_error(const std::string& why) {
-  speak_events();
-  complain({ErrorKind::kUsage, "the command cannot be read", "", why, "see weft --help"});
-  tell_end(kUsageError);
+bool is_said(int argc, char** argv, std::string_view word) {
+  return std::find(argv, argv + argc, word) != argv + argc;
+}
+
+// In words on standard error; for programs that asked for JSON, as an object on standard output too.
+void tell_error(const Error& error, bool as_json) {
+  if (as_json) {
+    print_json({{"error", json_of(error)}});
+    if (Result<void> printed = flush_output(); !printed) complain(printed.error());
+  }
+  complain(error);
 }
 
 // The verb that the words before an error said, else the program.
 const CLI::App& verb_said(const CLI::App& cli) {
   const std::vector<CLI::App*> said = cli.get_subcommands();
   return said.empty() ? cli : verb_said(*said.front());
+}
+
+// "weft solve".
+std::string words_of_verb(const CLI::App& verb) {
+  const CLI::App* parent = verb.get_parent();
+  return (parent != nullptr ? words_of_verb(*parent) + " " : "") + verb.get_name();
 }
 
 std::string words_of_unknown(const CLI::App& cli, const std::string& unknown) {
@@ -63,19 +77,24 @@ std::optional<int> read(CLI::App& cli, int argc, char** argv) {
     cli.parse(argc, argv);
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
-    const bool asked_for_help = error.get_exit_code() == 0;
-    const bool asked_for_events =
-        std::find(argv, argv + argc, std::string_view("--json-events")) != argv + argc;
-    const std::vector<std::string> unknown = cli.remaining(/*recurse=*/true);
-    // What is not known says more than what is then missing.
-    if (!asked_for_help && asked_for_events) {
-      tell_usage_error(unknown.empty() ? error.what() : words_of_unknown(cli, unknown.front()));
-    } else if (!asked_for_help && !unknown.empty()) {
-      note("weft: " + words_of_unknown(cli, unknown.front()) + ". See weft --help.");
-    } else {
+    if (error.get_exit_code() == 0) {
       cli.exit(error);
+      return kDone;
     }
-    return asked_for_help ? kDone : kUsageError;
+    if (is_said(argc, argv, "--json-events")) speak_events();
+    const std::vector<std::string> unknown = cli.remaining(/*recurse=*/true);
+    const CLI::App& verb = verb_said(cli);
+    // What is not known says more than what is then missing.
+    const std::string why = !unknown.empty() ? words_of_unknown(cli, unknown.front())
+                            : error.get_name() == "RequiredError" && verb.get_subcommands().empty() &&
+                                    verb.get_require_subcommand_min() > 0
+                                ? "a verb is missing"
+                                : error.what();
+    tell_error(
+        {ErrorKind::kUsage, "the command cannot be read", "", why, "see " + words_of_verb(verb) + " --help"},
+        is_said(argc, argv, "--json"));
+    tell_end(kUsageError);
+    return kUsageError;
   }
 }
 
@@ -92,22 +111,24 @@ std::string words_of_exit_codes() {
 }
 
 // The one place where an error becomes words and an exit code.
-int finish(Result<int> result) {
+int finish(Result<int> result, bool as_json = false) {
   if (Result<void> printed = flush_output(); result && !printed) result = std::move(printed).error();
   if (result) return *result;
-  complain(result.error());
+  tell_error(result.error(), as_json);
   return exit_code_of(result.error().kind);
 }
 
 int finish(const Run& run, const CommonArguments& common) {
   try {
-    return finish(run(common));
+    return finish(run(common), common.json);
   } catch (const std::bad_alloc&) {
-    return finish(Error{ErrorKind::kTryAgain, "out of memory", "", "",
-                        "close other programs, or use a larger machine"});
+    return finish(
+        Error{ErrorKind::kTryAgain, "out of memory", "", "", "close other programs, or use a larger machine"},
+        common.json);
   } catch (const std::exception& bug) {
     return finish(
-        Error{ErrorKind::kInternal, "a bug in weft", "", bug.what(), "report it with the command you ran"});
+        Error{ErrorKind::kInternal, "a bug in weft", "", bug.what(), "report it with the command you ran"},
+        common.json);
   }
 }
 
@@ -129,6 +150,16 @@ SaidVerb said_verb(const std::vector<Verb>& verbs, int argc, char** argv) {
   return said;
 }
 
+// "weft help solve" asks what "weft solve --help" does. Empty where the first word is another.
+std::vector<char*> words_for_help(int argc, char** argv) {
+  static std::string option = "--help";
+  if (argc < 2 || std::string_view(argv[1]) != "help") return {};
+  std::vector<char*> words = {argv[0]};
+  words.insert(words.end(), argv + 2, argv + argc);
+  words.push_back(option.data());
+  return words;
+}
+
 }  // namespace
 
 void add_verbs(CLI::App& parent, const std::vector<Verb>& verbs, CommonArguments& common,
@@ -136,6 +167,7 @@ void add_verbs(CLI::App& parent, const std::vector<Verb>& verbs, CommonArguments
   parent.require_subcommand(1);
   for (const Verb& verb : verbs) {
     CLI::App* cli = parent.add_subcommand(verb.name, verb.help);
+    if (!verb.group.empty()) cli->group(verb.group);
     if (!verb.verbs.empty()) add_verbs(*cli, verb.verbs, common, runs);
     if (verb.add == nullptr) continue;
     Options options(*cli);
@@ -145,6 +177,8 @@ void add_verbs(CLI::App& parent, const std::vector<Verb>& verbs, CommonArguments
 }
 
 int run_program(const Program& program, int argc, char** argv) {
+  if (std::vector<char*> words = words_for_help(argc, argv); !words.empty())
+    return run_program(program, static_cast<int>(words.size()), words.data());
   const SaidVerb said = said_verb(program.verbs, argc, argv);
   if (said.verb != nullptr && !said.verb->program.empty())
     return finish(become(program_beside(said.verb->program), {argv + 1 + said.words, argv + argc}));
@@ -156,6 +190,7 @@ int run_program(const Program& program, int argc, char** argv) {
   CLI::App cli(program.help, program.name);
   cli.set_version_flag("--version", program.version.empty() ? WEFT_VERSION : program.version);
   cli.footer(words_of_exit_codes());
+  format_help(cli, columns_of_help());
   CommonArguments common;
   std::vector<RunOfVerb> runs;
   add_verbs(cli, program.verbs, common, runs);

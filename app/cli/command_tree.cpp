@@ -87,7 +87,8 @@ CommandWord tree_of(const Program& program) {
 std::string verb_lines_source(const Program& program) {
   std::string lines;
   for (const Verb& verb : program.verbs)
-    lines += fmt::format("    {{\"{}\", R\"text({})text\", \"{}\"}},\n", verb.name, verb.help, verb.program);
+    lines += fmt::format("    {{\"{}\", R\"text({})text\", \"{}\", \"{}\"}},\n", verb.name, verb.help,
+                         verb.program, verb.group);
   return "// SPDX-License-Identifier: Apache-2.0\n#include \"app/cli/verb_lines.h\"\n\n"
          "namespace weft::app {\nnamespace {\n\nconstexpr VerbLine kVerbLines[] = {\n" +
          lines +

@@ -76,9 +76,15 @@ std::vector<capture::SetupFinding> examine(const capture::Rig& rig) {
 }
 
 Result<int> examine_and_print(const std::filesystem::path& rig_file, const CommonArguments& common) {
-  const Result<capture::Rig> rig = capture::read_rig(find_rig(rig_file));
-  if (!rig) return rig.error();
-  const std::vector<capture::SetupFinding> found = examine(*rig);
+  // Without a file that can be read the machine is looked at all the same, for what a rig has by default.
+  const Result<capture::Rig> read = capture::read_rig(find_rig(rig_file));
+  const capture::Rig rig = read ? *read : capture::Rig();
+  std::vector<capture::SetupFinding> found;
+  if (!read) {
+    found.push_back(capture::fault_of("rig file", read.error()));
+    if (read.error().kind == ErrorKind::kNoInput) found.back().remedy = "weft rig new NAME writes one";
+  }
+  append(found, read ? examine(rig) : examine_devices(rig));
   Json rows = Json::array();
   for (const capture::SetupFinding& f : found) {
     rows.push_back(json_of(f));
@@ -86,7 +92,7 @@ Result<int> examine_and_print(const std::filesystem::path& rig_file, const Commo
     print(fmt::format("{:8} {:12} {}", name_of(f.verdict), f.part, f.says));
     if (!f.remedy.empty()) print(fmt::format("{:21} -> {}", "", f.remedy));
   }
-  if (common.json) print_json({{"rig", rig->name}, {"findings", rows}});
+  if (common.json) print_json({{"rig", rig.name}, {"findings", rows}});
   const auto first = std::find_if(found.begin(), found.end(), is_fault);
   return first == found.end() ? kDone : exit_code_of(first->kind);
 }

@@ -18,8 +18,10 @@ std::vector<Verb> all_verbs() {
   std::vector<Verb> all;
   for (const weft::app::VerbLine& line : weft::app::verb_lines()) {
     const auto here = std::ranges::find(light, std::string_view(line.name), &Verb::name);
-    all.push_back(here != light.end() ? *here
-                                      : Verb{.name = line.name, .help = line.help, .program = line.program});
+    all.push_back(
+        here != light.end()
+            ? *here
+            : Verb{.name = line.name, .help = line.help, .program = line.program, .group = line.group});
   }
   return all;
 }

@@ -16,6 +16,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/opened_devices.h"
 #include "app/cli/print_rig_plan.h"
+#include "app/cli/rig_new.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/rig_owner.h"
 #include "app/cli/terminal.h"
@@ -295,8 +296,9 @@ Run add_rig_test(Options& options) {
 Verb rig_verb() {
   return {
       .name = "rig",
-      .help = "Try the parts of a rig",
+      .help = "Begin a rig, and try its parts",
       .verbs = {
+          {"new", "Write a rig file that names the board and the camera that are plugged in", add_rig_new},
           {"status", "What board and camera say of themselves", add_rig_status},
           {"lights", "Light the LEDs one after another", add_rig_lights},
           {"shot", "Take one photograph that is not kept: what is clipped, and a picture", add_rig_shot},

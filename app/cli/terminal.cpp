@@ -20,11 +20,11 @@ namespace {
 
 constexpr int kBarCells = 30;
 
-volatile std::sig_atomic_t signals_seen = 0;
+volatile std::sig_atomic_t signal_seen = 0;
 
-extern "C" void on_signal(int) {
-  if (signals_seen != 0) _exit(130);
-  signals_seen = 1;
+extern "C" void on_signal(int signal) {
+  if (signal_seen != 0) _exit(130);
+  signal_seen = signal;
 }
 
 bool speaks_events = false;
@@ -122,11 +122,15 @@ void ProgressLine::draw(double share, Clock::time_point now) {
   std::fflush(stderr);
 }
 
+bool is_stopped_by_hand() {
+  return signal_seen == SIGINT;
+}
+
 std::stop_token stop_on_signal() {
   static std::stop_source source;
   static std::jthread watcher([](const std::stop_token& ending) {
     while (!ending.stop_requested()) {
-      if (signals_seen != 0) source.request_stop();
+      if (signal_seen != 0) source.request_stop();
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
   });

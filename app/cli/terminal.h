@@ -47,6 +47,8 @@ class ProgressLine {
 
 /// The stop token that SIGINT and SIGTERM request; a second signal ends the program at once.
 std::stop_token stop_on_signal();
+/// Whether the signal was SIGINT, as of Ctrl-C; a farm ends what it runs by SIGTERM.
+bool is_stopped_by_hand();
 
 /// A line that a person typed; nothing at the end of input or when stopped.
 std::optional<std::string> typed_line(const std::stop_token& stop);

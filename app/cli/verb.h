@@ -30,6 +30,7 @@ struct Verb {
   Run (*add)(Options& options) = {};  ///< adds its options, and keeps alive what they are read into
   std::vector<Verb> verbs = {};       ///< verbs of its own, one of which must be said
   std::string program = {};           ///< a program beside this one, which reads the rest and runs
+  std::string group = {};             ///< the heading that the list of verbs has it under
 };
 
 }  // namespace weft::app

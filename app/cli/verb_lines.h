@@ -10,6 +10,7 @@ struct VerbLine {
   const char* name;
   const char* help;
   const char* program;  ///< as Verb::program
+  const char* group;    ///< likewise
 };
 
 /// All verbs of weft in the order of its help. The build writes it by `weft-work --manuals`, so that the

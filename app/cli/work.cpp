@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) {
   std::vector<weft::app::Verb> verbs = weft::app::work_verbs();
-  verbs.push_back({.name = "bench", .help = "Measure", .program = "weft-bench"});
+  verbs.push_back({.name = "bench", .help = "Measure", .program = "weft-bench", .group = "Try"});
   return weft::app::run_whole_program(
       {.name = weft::app::kProgramName, .help = weft::app::kProgramHelp, .verbs = std::move(verbs)}, argc,
       argv);

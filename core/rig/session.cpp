@@ -156,6 +156,13 @@ std::vector<const Shot*> Session::lit(Polariser polariser) const {
 
 Result<Session> read_session(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "session.json";
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored) && !ignored) {
+    const bool is_folder = std::filesystem::is_directory(folder, ignored);
+    return Error{ErrorKind::kNoInput, "there is no such session", folder.string(),
+                 is_folder ? "it holds no session.json" : "there is no such folder",
+                 "name a session's folder, NAME.weft; photographs are solved by weft solve --photos"};
+  }
   const Result<Json> document = read_json(file, kSessionSchema, 1);
   if (!document) return document.error();
   Result<Session> session = read_fields<Session>(*document, file.string());

@@ -111,7 +111,8 @@ TEST_F(Chain, IsStaleFromTheFirstThingThatChangedAndMadeAgainFromThere) {
   json_of("make cloth.weft --preset png16");
   photograph_again();
   EXPECT_THAT(freshness(), ElementsAre("fresh", "stale", "stale", "stale"));
-  for (const std::size_t link : {1U, 2U, 3U}) EXPECT_THAT(why(link), HasSubstr("was photographed again since"));
+  for (const std::size_t link : {1U, 2U, 3U})
+    EXPECT_THAT(why(link), HasSubstr("was photographed again since"));
   EXPECT_THAT(names_of(json_of("make cloth.weft")), ElementsAre("solve", "maps", "export"));
   EXPECT_THAT(freshness(), ElementsAre("fresh", "fresh", "fresh", "fresh"));
 

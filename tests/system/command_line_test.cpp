@@ -280,6 +280,50 @@ TEST(Help, OfSolveNamesTheLevelThatIsTheDefault) {
   EXPECT_THAT(help.substr(from, to - from), testing::HasSubstr("default"));
 }
 
+TEST(Help, IsAlsoAVerb) {
+  EXPECT_EQ(run_weft({"help"}).output, run_weft({"--help"}).output);
+  const Outcome solve = run_weft({"help", "solve"});
+  EXPECT_EQ(solve.exit_code, 0);
+  EXPECT_EQ(solve.output, run_weft({"solve", "--help"}).output);
+  EXPECT_EQ(run_weft({"help", "batch", "plan"}).output, run_weft({"batch", "plan", "--help"}).output);
+}
+
+TEST(Help, HasVerbsByTheDayAndNoLineOverAHundredColumns) {
+  const std::string help = run_weft({"--help"}).output;
+  std::size_t before = 0;
+  for (const char* group : {"Scan:", "Calibrate:", "Solve:", "Material:", "Archive:", "Service:", "Try:"}) {
+    const std::size_t at = help.find(std::string("\n") + group + "\n");
+    ASSERT_NE(at, std::string::npos) << group;
+    EXPECT_GT(at, before) << group;
+    before = at;
+  }
+  EXPECT_EQ(help.find("Subcommands:"), std::string::npos) << "each verb has a group";
+  for (const Words& words :
+       {Words{"help"}, Words{"help", "solve"}, Words{"help", "maps"}, Words{"help", "export"}}) {
+    std::istringstream lines(run_weft(words).output);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
+  }
+}
+
+TEST(Usage, ErrorsAreAnObjectForWhoAskedForJson) {
+  const Outcome mistyped = run_weft({"solve", "x.weft", "--quality", "fst", "--json"});
+  EXPECT_EQ(mistyped.exit_code, 64);
+  EXPECT_EQ(mistyped.json()["error"]["kind"], "usage");
+  EXPECT_THAT(mistyped.json()["error"]["why"], testing::HasSubstr("did you mean 'fast'"));
+  const Outcome missing = run_weft({"solve", "/nowhere/x.weft", "--json"});
+  EXPECT_EQ(missing.exit_code, 66);
+  EXPECT_EQ(missing.json()["error"]["where"], "/nowhere/x.weft");
+  EXPECT_THAT(missing.error, testing::HasSubstr("there is no such session")) << "people are told too";
+}
+
+TEST(Usage, AFolderThatIsNoSessionIsToldHowPhotographsAreSolved) {
+  const Workspace work;
+  const Outcome run = run_weft({"solve", work.path().string()});
+  EXPECT_EQ(run.exit_code, 66);
+  EXPECT_THAT(run.error, testing::AllOf(testing::HasSubstr("it holds no session.json"),
+                                        testing::HasSubstr("weft solve --photos")));
+}
+
 TEST(Usage, AnUnknownOptionOfAnyVerbIsNamed) {
   const Workspace work;
   const Words commands[] = {{"simulate", "a.toml", "-o", "b"},
@@ -305,7 +349,7 @@ TEST(Usage, AWordTooManyIsNamed) {
 TEST(Usage, ErrorsEndWith64AndLeaveNothing) {
   const Workspace work;
   const std::pair<Words, Words> wrong[] = {
-      {{}, {"subcommand"}},
+      {{}, {"a verb is missing"}},
       {{"weave"}, {"weave"}},
       {{"simulate"}, {"scene"}},
       {{"simulate", "a.toml"}, {"--output"}},
@@ -325,7 +369,7 @@ TEST(Usage, ErrorsEndWith64AndLeaveNothing) {
       {{"solve", "--photos", "b", "--calibration", "c"}, {"--calibration"}},
       {{"compare", "a.exr"}, {"truth"}},
       {{"compare", "a.exr", "b.exr", "--kind", "height"}, {"--kind", "height"}},
-      {{"bench"}, {"subcommand"}},
+      {{"bench"}, {"a verb is missing"}},
       {{"bench", "solve", "--megapixels", "0"}, {"--megapixels"}}};
   for (const auto& [arguments, words] : wrong) {
     SCOPED_TRACE("weft " + joined(arguments));

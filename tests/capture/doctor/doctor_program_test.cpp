@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "capture/rig.h"
 #include "core/base/json_document.h"
 #include "tests/core/places.h"
 #include "tests/virtual_rig/ptp/client_process.h"
@@ -61,6 +62,40 @@ TEST_F(DoctorProgram, FindsTheCameraOfARigOnUsbAndTellsWhenItIsGone) {
   const ProgramRun gone = doctor();
   EXPECT_EQ(gone.exit_code, 69) << gone.output;
   EXPECT_THAT(gone.output, AllOf(HasSubstr("fault    camera       no D5100 on USB"), HasSubstr("firmware ")));
+}
+
+TEST_F(DoctorProgram, LooksAtTheMachineWithoutARigFileToo) {
+  const ProgramRun ran =
+      virtual_rig::run_program({program_path("weft"), "doctor"},
+                               {"HOME=" + folder_.string(), "XDG_CONFIG_HOME="}, folder_.string(), 60);
+  EXPECT_NE(ran.exit_code, 0);
+  EXPECT_THAT(ran.output,
+              AllOf(HasSubstr("fault    rig file"), HasSubstr("weft rig new"), HasSubstr("board")));
+}
+
+TEST_F(DoctorProgram, FindsNothingWrongWithARigFileThatRigNewWrote) {
+  ASSERT_EQ(rig({"scene.toml", "--folder", "rig", "--no-wait"}).exit_code, 0);
+  const Result<Rig> played = read_rig(folder_ / "rig" / "rig.toml");
+  ASSERT_TRUE(played) << played.error().message();
+  const auto weft = [&](const std::string& words) {
+    return virtual_rig::run_program(
+        {"/bin/sh", "-c", "exec env $(cat rig/environment) " + std::string(program_path("weft")) + words}, {},
+        folder_.string(), 60);
+  };
+  const std::string make =
+      " rig new north -o new.toml --board " + played->board.port + " --camera " + played->camera.port;
+  const ProgramRun made = weft(make);
+  EXPECT_EQ(made.exit_code, 0) << made.output;
+  EXPECT_THAT(made.output, AllOf(HasSubstr("board at "), HasSubstr("camera D5100 6000001")));
+  const Result<Rig> read = read_rig(folder_ / "new.toml");
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_EQ(read->name, "north");
+  EXPECT_EQ(read->leds, 10);
+  EXPECT_EQ(read->board.port, played->board.port);
+  EXPECT_EQ(read->camera.serial, "6000001");
+  const ProgramRun examined = weft(" doctor --rig new.toml");
+  EXPECT_EQ(examined.exit_code, 0) << examined.output;
+  EXPECT_THAT(weft(make).output, HasSubstr("there is such a file")) << "nothing is lost";
 }
 
 }  // namespace

@@ -51,8 +51,7 @@ std::optional<SolveFacts> solve_facts_of(const Session& session, const std::stri
 }
 
 Result<void> add_layers(Viewed& viewed) {
-  Result<Layers> layers =
-      viewed.set ? layers_of_set(viewed.folder, *viewed.set) : layers_of(viewed.folder);
+  Result<Layers> layers = viewed.set ? layers_of_set(viewed.folder, *viewed.set) : layers_of(viewed.folder);
   if (!layers) return std::move(layers).error();
   viewed.layers = std::move(*layers);
   return {};
