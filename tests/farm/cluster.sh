@@ -116,7 +116,8 @@ node_start() {
 # step that started that. Slurm would believe for minutes that they run, so it is told.
 node_dies() {
   local step
-  step=$(parent_of "$2") && kill -KILL "$2" "$step" "${node_pids[$1]}" || return
+  # The step first: it would report the end of its task to the controller.
+  step=$(parent_of "$2") && kill -KILL "$step" "${node_pids[$1]}" "$2" || return
   wait "${node_pids[$1]}" 2>/dev/null
   scontrol update nodename="node$1" state=down reason='it is gone'
 }

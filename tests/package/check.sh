@@ -67,7 +67,7 @@ pages_are_clean() {
 
 every_verb_has_a_page() {
   local verb
-  for verb in $("$stage/usr/bin/weft" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
+  for verb in $("$stage/usr/bin/weft" --help | sed -n '/^Scan:/,/^Exit codes:/s/^  \([a-z]*\) .*/\1/p'); do
     [[ -e $stage/usr/share/man/man1/weft-$verb.1.gz ]] || { echo "no page: $verb" && return 1; }
   done
   [[ -n ${verb:-} ]]

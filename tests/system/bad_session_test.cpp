@@ -151,7 +151,7 @@ TEST_F(BadSession, AJpegNamedAsRawIsRefused) {
 
 TEST_F(BadSession, AFolderWithoutSessionIsNamed) {
   fs::remove(session_ / "session.json");
-  expect_solve_refused(66, {"cannot read", "session.json", "No such file", "check the path"});
+  expect_solve_refused(66, {"there is no such session", "it holds no session.json", "weft solve --photos"});
 }
 
 TEST_F(BadSession, AJournalThatIsNoJsonIsRefused) {

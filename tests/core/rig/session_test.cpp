@@ -237,7 +237,7 @@ TEST(Session, ThatIsNotThereIsNoInput) {
   const Result<Session> session = read_session(folder / "missing.weft");
   ASSERT_FALSE(session);
   EXPECT_EQ(session.error().kind, ErrorKind::kNoInput);
-  EXPECT_EQ(session.error().where, (folder / "missing.weft/session.json").string());
+  EXPECT_EQ(session.error().where, (folder / "missing.weft").string());
 }
 
 }  // namespace
