@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "app/cli/carried_scenes.h"
@@ -11,10 +12,13 @@
 #include "core/base/files.h"
 #include "core/base/process.h"
 #include "core/base/temporary_folder.h"
+#include "core/describe/field_json.h"
 #include "core/rig/session.h"
 #include "material/read/compare.h"
 #include "simulator/scene/resolution.h"
 #include "simulator/simulate.h"
+#include "solve/run/explain.h"
+#include "solve/run/ladder_picture.h"
 #include "solve/run/solve_session.h"
 #include "virtual_rig/rig_process.h"
 
@@ -45,10 +49,16 @@ struct Outcome {
   bool is_scanned = false;  ///< else rendered, where no virtual rig is installed
   double scan_seconds = 0;
   std::size_t frames = 0;
-  solve::SolveReport solved;
+  std::vector<solve::LadderStep> levels;  ///< all of them, by their height
+  std::string recommended;                ///< the level that the price of this cloth says to buy
+  fs::path ladder;                        ///< picture of the same pixels at each level
   solve::NormalComparison normal;
   material::AlbedoComparison albedo;
   std::uint64_t session_bytes = 0, map_bytes = 0;
+
+  const solve::LadderStep& bought() const {
+    return *std::ranges::find(levels, recommended, &solve::LadderStep::quality);
+  }
 };
 
 Result<std::unique_ptr<virtual_rig::RigProcess>> started_rig(const DemoArguments& arguments, bool quiet) {
@@ -105,6 +115,21 @@ Result<void> photograph(const DemoArguments& arguments, const simulator::Scene& 
   return render(scene, session, common);
 }
 
+// Each level as it is foretold, then as it comes.
+Result<void> climb(const fs::path& session, Outcome& outcome, const JobContext& context) {
+  const Result<solve::Ladder> ladder = solve::explain_session({session, {}, {}}, {}, {}, context);
+  if (!ladder) return ladder.error();
+  const Result<std::size_t> chosen = solve::choose_level(*ladder, {});
+  if (!chosen) return chosen.error();
+  outcome.recommended = ladder->levels[*chosen].name();
+  outcome.ladder = session.parent_path() / "ladder.png";
+  Result<std::vector<solve::LadderStep>> levels =
+      solve::draw_ladder({session, {}, {}}, {}, outcome.ladder, context, ladder->levels);
+  if (!levels) return std::move(levels).error();
+  outcome.levels = std::move(*levels);
+  return {};
+}
+
 Result<Outcome> scan_and_solve(const DemoArguments& arguments, const simulator::Scene& scene,
                                const fs::path& session, const CommonArguments& common) {
   Outcome outcome;
@@ -120,11 +145,9 @@ Result<Outcome> scan_and_solve(const DemoArguments& arguments, const simulator::
   outcome.session_bytes = *session_bytes;
 
   ProgressLine line(common.quiet);
-  Result<solve::SolveReport> solved =
-      solve::solve_session({session, {}, {}}, {}, {common.threads, stop_on_signal(), line.callback()});
-  if (!solved) return std::move(solved).error();
-  outcome.solved = std::move(*solved);
-  const fs::path& maps = outcome.solved.folder;
+  const JobContext context = {common.threads, stop_on_signal(), line.callback()};
+  if (Result<void> ok = climb(session, outcome, context); !ok) return std::move(ok).error();
+  const fs::path& maps = outcome.bought().folder;
   const Result<std::uint64_t> map_bytes = bytes_in(maps);
   if (!map_bytes) return map_bytes.error();
   outcome.map_bytes = *map_bytes;
@@ -137,41 +160,60 @@ Result<Outcome> scan_and_solve(const DemoArguments& arguments, const simulator::
   return outcome;
 }
 
+// What accuracy costs: foretold from a cut of the frame, and as it came.
+void print_levels(const Outcome& o) {
+  print("  level          degrees             seconds");
+  print("              foretold    true    foretold   taken");
+  for (const solve::LadderStep& step : o.levels) {
+    if (!step.foretold || !step.taken) continue;
+    print(fmt::format("  {:<10}  {:>8.3g} {:>7} {:>11.3g} {:>7.3g}{}", step.quality, step.foretold->mean_deg,
+                      step.whole_deg ? fmt::format("{:.3g}", *step.whole_deg) : "-", step.foretold->seconds,
+                      step.taken->seconds, step.quality == o.recommended ? "  <- the one to buy" : ""));
+  }
+}
+
 void print_table(const simulator::Scene& scene, const Outcome& o) {
-  const solve::SolveSeconds& s = o.solved.seconds;
+  const solve::LadderStep& bought = o.bought();
   print(fmt::format("{}, {} x {} pixels, {} frames", scene.fabric, scene.camera.width, scene.camera.height,
                     o.frames));
+  print_levels(o);
+  print(fmt::format("  at {}:", bought.quality));
   print(fmt::format("  normal error    mean {:.3f}, median {:.3f}, 95 % under {:.3f} degrees",
                     o.normal.mean_deg, o.normal.median_deg, o.normal.p95_deg));
   print(fmt::format("  albedo error    mean {:.2f} %, bias {:+.2f} %", 100 * o.albedo.mean_rel,
                     100 * o.albedo.bias_rel));
-  print(fmt::format("  {}          {:.2f} s{}; {} MB of raw frames", o.is_scanned ? "scan  " : "render",
-                    o.scan_seconds, o.is_scanned ? " with the virtual rig's start" : "",
-                    o.session_bytes / 1000000));
-  print(
-      fmt::format("  solve           {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, "
-                  "sync {:.2f}; {} MB of maps",
-                  s.total, s.read, s.solve, s.write, s.pictures, s.sync, o.map_bytes / 1000000));
-  print(fmt::format("  look at         {}", (o.solved.folder / "sheet.png").string()));
+  print(fmt::format("  {}          {:.2f} s{}; {} MB of raw frames, {} MB of maps",
+                    o.is_scanned ? "scan  " : "render", o.scan_seconds,
+                    o.is_scanned ? " with the virtual rig's start" : "", o.session_bytes / 1000000,
+                    o.map_bytes / 1000000));
+  print(fmt::format("  look at         {}", fs::absolute(o.ladder).lexically_normal().string()));
+  print(fmt::format("                  {}", (bought.folder / "sheet.png").string()));
 }
 
 Json outcome_json(const Outcome& o) {
-  const solve::SolveSeconds& s = o.solved.seconds;
+  const solve::LadderStep& bought = o.bought();
+  Json seconds = bought.taken ? bought.taken->parts_s : Json::object();
+  seconds["scan"] = o.scan_seconds;
+  seconds["total"] = bought.taken ? bought.taken->seconds : 0;
+  Json levels = Json::array();
+  for (const solve::LadderStep& step : o.levels) {
+    levels.push_back({{"quality", step.quality},
+                      {"folder", step.folder.string()},
+                      {"true_deg", step.whole_deg ? Json(*step.whole_deg) : Json()},
+                      {"foretold", step.foretold ? object_of(*step.foretold) : Json()},
+                      {"taken", step.taken ? object_of(*step.taken) : Json()}});
+  }
   return {
+      {"levels", std::move(levels)},
+      {"recommended", o.recommended},
+      {"ladder", fs::absolute(o.ladder).lexically_normal().string()},
       {"scanned", o.is_scanned},
-      {"folder", o.solved.folder.string()},
-      {"sheet", (o.solved.folder / "sheet.png").string()},
+      {"folder", bought.folder.string()},
+      {"sheet", (bought.folder / "sheet.png").string()},
       {"normal",
        {{"mean_deg", o.normal.mean_deg}, {"median_deg", o.normal.median_deg}, {"p95_deg", o.normal.p95_deg}}},
       {"albedo", {{"mean_rel", o.albedo.mean_rel}, {"bias_rel", o.albedo.bias_rel}}},
-      {"seconds",
-       {{"scan", o.scan_seconds},
-        {"read", s.read},
-        {"solve", s.solve},
-        {"write", s.write},
-        {"pictures", s.pictures},
-        {"sync", s.sync},
-        {"total", s.total}}},
+      {"seconds", std::move(seconds)},
       {"session_bytes", o.session_bytes},
       {"map_bytes", o.map_bytes}};
 }
@@ -203,7 +245,7 @@ Result<int> demo(DemoArguments arguments, const CommonArguments& common) {
 
 Run add_demo(Options& options) {
   const auto a = std::make_shared<DemoArguments>();
-  options.add("scene", &a->scene, "Scene file (TOML); default a houndstooth of velour");
+  options.add("scene", &a->scene, "Scene file (TOML); default shot silk");
   options.add("-o,--output", &a->output, "Folder for the session and its maps").shows_default();
   options.add("--megapixels", &a->megapixels, "Size instead of the scene's, millions of pixels")
       .in_range(0.01, 200.0);
@@ -213,7 +255,7 @@ Run add_demo(Options& options) {
 }  // namespace
 
 Verb demo_verb() {
-  return {"demo", "Scan a simulated cloth, solve it and show the result", add_demo};
+  return {"demo", "Scan a simulated cloth, and show what each level of accuracy costs on it", add_demo};
 }
 
 }  // namespace weft::app

@@ -73,7 +73,8 @@ report::Picture enlarged(const report::Picture& picture) {
 }  // namespace
 
 Result<std::vector<LadderStep>> draw_ladder(const SessionOptions& input, const SolveOptions& options,
-                                            const fs::path& file, const JobContext& context) {
+                                            const fs::path& file, const JobContext& context,
+                                            std::span<const LevelPrice> prices) {
   const Result<SolvePlan> plan = plan_session(input);
   if (!plan) return plan.error();
   const Rect area = shown_area(plan->size);
@@ -91,11 +92,16 @@ Result<std::vector<LadderStep>> draw_ladder(const SessionOptions& input, const S
     SolveOptions solve = options;
     solve.method = level.name;
     solve.output.clear();
+    const auto price = std::ranges::find(prices, *level.level, &LevelPrice::level);
+    if (price != prices.end()) solve.foretold = price_of(*price);
     const Result<SolveReport> solved = solve_session(input, solve, context);
     if (!solved) return solved.error();
     const Result<Image<float>> crop = crop_of(solved->folder / "normal.exr", plan->size, area);
     if (!crop) return crop.error();
     LadderStep step = {level.name, solved->folder, {}};
+    if (solved->facts.error) step.whole_deg = solved->facts.error->mean_deg;
+    step.foretold = solved->facts.foretold;
+    step.taken = solved->facts.taken;
     if (truth) step.error_deg = mean_angle_deg(*crop, *truth);
     panels.push_back({level.name, step.error_deg ? fmt::format("mean {:.3f}°", *step.error_deg) : "",
                       enlarged(report::normal_picture(*crop))});

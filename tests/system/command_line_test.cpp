@@ -229,7 +229,16 @@ TEST(Demo, LeavesASessionAndItsMaps) {
   const Outcome run = run_weft({"demo", source_file("testdata/scenes/demo.toml").string(), "--megapixels",
                                 "0.01", "-o", (work / "demo").string(), "-q", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.error;
-  EXPECT_TRUE(fs::exists(run.json().at("sheet").get<std::string>())) << run.output;
+  const Json json = run.json();
+  EXPECT_TRUE(fs::exists(json.at("sheet").get<std::string>())) << run.output;
+  EXPECT_TRUE(fs::exists(json.at("ladder").get<std::string>())) << run.output;
+  ASSERT_EQ(json.at("levels").size(), 5U) << "preview to reference";
+  for (const Json& level : json["levels"]) {
+    EXPECT_GT(level["foretold"]["mean_deg"], 0.0) << level;
+    EXPECT_GT(level["taken"]["seconds"], 0.0) << level;
+    EXPECT_EQ(level["true_deg"].is_number(), level["quality"] != "preview") << level;
+  }
+  EXPECT_THAT(json["levels"].dump(), testing::HasSubstr(json["recommended"].get<std::string>()));
 }
 
 struct Verb {
