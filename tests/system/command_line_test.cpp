@@ -224,9 +224,9 @@ TEST(Bench, IsMissedBesideAWeftThatWasInstalledAlone) {
                                               testing::HasSubstr("build all of weft")));
 }
 
-TEST(Demo, LeavesASessionAndItsMaps) {
+TEST(Demo, LeavesASessionSolvedAtEveryLevelAndSaysWhatEachCosts) {
   const Workspace work;
-  const Outcome run = run_weft({"demo", source_file("testdata/scenes/demo.toml").string(), "--megapixels",
+  const Outcome run = run_weft({"demo", source_file("testdata/scenes/plain.toml").string(), "--megapixels",
                                 "0.01", "-o", (work / "demo").string(), "-q", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.error;
   const Json json = run.json();
