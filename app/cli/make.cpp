@@ -33,6 +33,7 @@ void print_words(const library::MakeReport& report, bool only_explains) {
   }
   for (const library::MadeLink& link : report.made)
     print(fmt::format("  made {} in {:.2f} s: {}", link.name, link.seconds, link.folder.string()));
+  print("  " + words_of(report.chain.verdict));
   for (const library::ChainLink& link : report.chain.links)
     print(fmt::format("  {:12} {}", link.name, words_of(link)));
 }

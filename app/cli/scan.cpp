@@ -25,6 +25,7 @@
 #include "core/describe/field_json.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
+#include "library/chain/chain.h"
 #include "solve/run/solve_session.h"
 
 namespace weft::app {
@@ -234,15 +235,19 @@ Result<Json> photograph(const capture::Rig& rig, const std::optional<std::string
 
 void print_outcome(const fs::path& session, const Json& status, const Json& warnings, const fs::path& sheet,
                    const CommonArguments& common) {
+  const Result<Session> scanned = read_session(session);
+  const auto verdict = scanned ? std::optional(library::chain_of(*scanned).verdict) : std::nullopt;
   if (common.json) {
     print_json({{"session", session.string()},
                 {"frames", status["frames"]},
                 {"exposure_us", status["exposure_us"]},
                 {"warnings", warnings},
+                {"verdict", verdict ? object_of(*verdict) : Json()},
                 {"preview", sheet.string()}});
     return;
   }
   print(session.string());
+  if (verdict) print("  " + words_of(*verdict));
   for (const Json& warning : warnings) print("  " + warning.get<std::string>());
   if (!sheet.empty()) print("  look at " + sheet.string());
 }

@@ -39,6 +39,7 @@ std::string age_of(const std::string& written) {
 
 void print_words(const library::Chain& chain) {
   print(chain.session + (chain.fabric.empty() ? "" : "  " + chain.fabric));
+  print("  " + words_of(chain.verdict));
   for (const library::ChainLink& link : chain.links)
     print(fmt::format("  {:12} {}{}", link.name, words_of(link), age_of(link.written)));
   if (!chain.is_fresh()) print(fmt::format("  to make what is not fresh: weft make {}", chain.session));

@@ -85,6 +85,13 @@ std::optional<Exposed> exposed_of(const Shot& shot) {
   return Exposed{clipped.get<double>(), room.get<double>()};
 }
 
+bool is_exposed_wrong(const Session& session) {
+  const std::map<int, Exposed> leds = exposed_by_led(session);
+  const auto is_over = [](const auto& led) { return led.second.clipped >= kOverFrom; };
+  const auto is_dark = [](const auto& led) { return led.second.room >= kDarkFrom; };
+  return std::ranges::any_of(leds, is_over) || (!leds.empty() && std::ranges::all_of(leds, is_dark));
+}
+
 std::string exposure_warning(const Session& session) {
   const std::map<int, Exposed> leds = exposed_by_led(session);
   if (leds.empty()) return "";

@@ -28,4 +28,7 @@ inline constexpr double kDarkFrom = 4;
 /// empty: nothing. Of a LED's shots, its brackets among them, the best counts; superseded ones do not.
 std::string exposure_warning(const Session& session);
 
+/// Whether that is more than highlights: a LED is over, or all are dark.
+bool is_exposed_wrong(const Session& session);
+
 }  // namespace weft

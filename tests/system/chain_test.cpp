@@ -139,6 +139,41 @@ TEST_F(Chain, SaysThatTheSolverOrTheCalibrationIsAnotherSince) {
   EXPECT_THAT(why(1), HasSubstr("and it was made with aaaaaaaaaaaa"));
 }
 
+TEST_F(Chain, SaysInOneLineWhatTheScanIsWorthAndWhatToDo) {
+  const auto verdict = [&] { return json_of("status cloth.weft")["sessions"][0]["verdict"]; };
+  EXPECT_EQ(verdict()["grade"], "good") << verdict();
+  EXPECT_EQ(verdict()["says"], "nothing is wrong with its photographs");
+  json_of("make cloth.weft");
+  EXPECT_EQ(verdict()["grade"], "good") << verdict();
+  EXPECT_THAT(verdict()["says"].get<std::string>(), HasSubstr("degrees on 100 % of the cloth"));
+  EXPECT_EQ(verdict()["action"], "");
+
+  // As a scan writes it down of LEDs that are over, of a little of one that is, and of a scan that is dark.
+  const auto expose = [&](double clipped, double room, int led) {
+    edit_json(session_ / "session.json", [&](Json& json) {
+      for (Json& shot : json["shots"]) {
+        if (shot["role"] != "lit") continue;
+        const bool is_it = led == 0 || shot["led"] == led;
+        shot["exposed"] = {{"clipped", is_it ? clipped : 0.0}, {"room", is_it ? room : 1.0}};
+      }
+    });
+  };
+  expose(0.001, 0.9, 3);
+  EXPECT_EQ(verdict()["grade"], "usable") << verdict();
+  EXPECT_THAT(verdict()["says"].get<std::string>(),
+              HasSubstr("LED 3 has up to 0.1 percent of a channel full"));
+  EXPECT_THAT(verdict()["action"].get<std::string>(), HasSubstr("scan again with a shorter exposure"));
+  expose(0.9, 0.1, 0);
+  EXPECT_EQ(verdict()["grade"], "take it again") << verdict();
+  EXPECT_THAT(verdict()["says"].get<std::string>(), HasSubstr("All 10 LEDs are over"));
+  EXPECT_EQ(verdict()["action"], "scan again with a metered exposure");
+  expose(0, 32, 0);
+  EXPECT_EQ(verdict()["grade"], "take it again") << verdict();
+  EXPECT_THAT(weft("status cloth.weft").output, HasSubstr("take it again: All 10 LEDs are dark"));
+  edit_json(session_ / "session.json", [](Json& json) { json["state"] = "capturing"; });
+  EXPECT_EQ(verdict()["grade"], "unfinished") << verdict();
+}
+
 TEST_F(Chain, IsRefusedBeforeAnythingIsMade) {
   const Outcome no_preset = weft("make cloth.weft --preset png61");
   EXPECT_EQ(no_preset.exit_code, 66);

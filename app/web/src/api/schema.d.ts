@@ -6503,7 +6503,16 @@ export interface components {
             /** @description Its folder */
             session: string;
             fabric: string;
+            verdict: components["schemas"]["ScanVerdict"];
             links: components["schemas"]["ChainLink"][];
+        };
+        ScanVerdict: {
+            /** @enum {string} */
+            grade: "unfinished" | "take it again" | "usable" | "good";
+            /** @description Why, in a line */
+            says: string;
+            /** @description Empty: nothing is to do */
+            action: string;
         };
         ChainLink: {
             /** @enum {string} */

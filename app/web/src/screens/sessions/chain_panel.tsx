@@ -7,6 +7,7 @@ import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Mark, type Verdict} from '../../ui/mark';
+import {counted} from '../../ui/say';
 import {useLatest} from '../../ui/use_latest';
 import {timeOf} from '../../ui/words';
 import {jobs, queueJob, useJobs} from '../jobs/jobs';
@@ -17,37 +18,52 @@ type Link = Schemas['ChainLink'];
 
 const verdicts: Record<Link['freshness'], Verdict> = {fresh: 'fine', draft: 'warning', stale: 'warning', missing: 'waiting'};
 
+const grades: Record<Schemas['ScanVerdict']['grade'], Verdict> = {good: 'fine', usable: 'warning', 'take it again': 'fault', unfinished: 'waiting'};
+
 /** Exports are made again where there are some; a preset adds one. */
 const asBefore = '';
 
-export function ChainPanel({session, revision}: {session: string; revision: unknown}) {
+export function ChainPanel({session: of}: {session: Schemas['Session']}) {
+  const session = of.name;
   useJobs();
-  const [links, setLinks] = useState<readonly Link[]>([]);
+  const [chain, setChain] = useState<Schemas['Chain'] | null>(null);
   const [presets, setPresets] = useState<readonly string[]>([]);
   const [preset, setPreset] = useState(asBefore);
   const [complaint, complain] = useState<ApiError | null>(null);
   useLatest((latest) => {
     latest(answer(api.GET('/api/v1/sessions/{name}/chain', {params: {path: {name: session}}}))).then(
-      (chain) => (setLinks(chain.links), complain(null)),
+      (found) => (setChain(found), complain(null)),
       (error: unknown) => complain(asApiError(error)),
     );
-  }, [session, revision]);
+  }, [of]);
   useEffect(() => {
     answer(api.GET('/api/v1/presets')).then((list) => setPresets(list.presets.map(({name}) => name)), () => {});
   }, []);
   const make = useAction(() => queueJob({kind: 'make', session, ...(preset !== asBefore && {presets: [preset]})}));
   const job = jobs.value.find(({kind, of}) => kind === 'make' && of === session);
   const isRunning = job !== undefined && !hasEnded(job);
+  const links = chain?.links ?? [];
   const isFinal = links.every(({name, freshness}) => freshness === 'fresh' || (name === 'export' && freshness === 'missing'));
   return (
     <section class="panel chain" aria-labelledby="chain-title">
       <h2 id="chain-title">From photographs to files</h2>
+      {chain && (
+        <p>
+          <Mark verdict={grades[chain.verdict.grade]}>{chain.verdict.grade}</Mark> {chain.verdict.says}. <strong>{chain.verdict.action}</strong>
+        </p>
+      )}
+      {of.warnings.length > 0 && (
+        <details>
+          <summary>{counted(of.warnings.length, 'warning')}</summary>
+          <ul>{of.warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>
+        </details>
+      )}
       <ol>{links.map((link) => <Row key={`${link.name} ${link.folder}`} session={session} link={link} />)}</ol>
       <div class="row">
         <Choice
           label="Export for"
           value={preset}
-          options={[{value: asBefore, says: 'what was exported before'}, ...presets.map((name) => ({value: name, says: name}))]}
+          options={[{value: asBefore, says: 'as before'}, ...presets.map((name) => ({value: name, says: name}))]}
           onChange={setPreset}
         />
         <Button kind="main" isDisabled={make.isBusy || isRunning || (isFinal && preset === asBefore)} onClick={() => void make.run()}>Make it final</Button>

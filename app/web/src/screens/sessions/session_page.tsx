@@ -51,8 +51,7 @@ export function SessionPage({name}: {name: string}) {
       </div>
       <Complaint error={complaint} />
       {one && <Facts one={one} />}
-      {one && <Warnings one={one} />}
-      {one && <ChainPanel session={name} revision={one} />}
+      {one && <ChainPanel session={one.session} />}
       {one && (
         <div class="columns">
           <div class="column">
@@ -94,16 +93,6 @@ function Finish({name}: {name: string}) {
       <Button kind="main" isDisabled={finish.isBusy} onClick={() => void finish.run()}>Finish the scan</Button>
       <Complaint error={finish.complaint} />
     </>
-  );
-}
-
-function Warnings({one: {session}}: {one: OneSession}) {
-  if (session.warnings.length === 0) return null;
-  return (
-    <section class="panel warnings" aria-labelledby="warnings-title">
-      <h2 id="warnings-title">Warnings</h2>
-      <ul>{session.warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>
-    </section>
   );
 }
 
