@@ -85,11 +85,10 @@ std::optional<int> read(CLI::App& cli, int argc, char** argv) {
     const std::vector<std::string> unknown = cli.remaining(/*recurse=*/true);
     const CLI::App& verb = verb_said(cli);
     // What is not known says more than what is then missing.
+    const bool lacks_a_verb = verb.get_require_subcommand_min() > 0 && verb.get_subcommands().empty();
     const std::string why = !unknown.empty() ? words_of_unknown(cli, unknown.front())
-                            : error.get_name() == "RequiredError" && verb.get_subcommands().empty() &&
-                                    verb.get_require_subcommand_min() > 0
-                                ? "a verb is missing"
-                                : error.what();
+                            : lacks_a_verb   ? "a verb is missing"
+                                             : error.what();
     tell_error(
         {ErrorKind::kUsage, "the command cannot be read", "", why, "see " + words_of_verb(verb) + " --help"},
         is_said(argc, argv, "--json"));

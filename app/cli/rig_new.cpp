@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "app/cli/exit_code.h"
@@ -18,6 +19,7 @@
 #include "capture/rig.h"
 #include "capture/rig_devices/rig_devices.h"
 #include "core/base/files.h"
+#include "core/toml/field_toml.h"
 
 namespace weft::app {
 namespace {
@@ -73,25 +75,30 @@ std::string find_camera(const NewRig& a, capture::Rig& rig) {
   return fmt::format("camera {} {} at {}", facts->model, facts->serial, facts->port);
 }
 
-// A text of TOML's basic strings.
-std::string quoted(const std::string& text) {
-  return Json(text).dump();
+std::string text_of(const capture::Rig& rig) {
+  return "# A rig of weft. Every key may be left out: docs/rig.md has them all.\n" +
+         toml_of({{"name", rig.name}, {"leds", rig.leds}}) + "\n[board]\n" +
+         toml_of({{"port", rig.board.port}}) + "\n[camera]  # an empty port: it is found on USB\n" +
+         toml_of(
+             {{"profile", rig.camera.profile}, {"port", rig.camera.port}, {"serial", rig.camera.serial}}) +
+         "\n[scan]  # calibration: the folder that weft calibrate all makes\n" +
+         toml_of({{"calibration", ""},
+                  {"iso", rig.scan.iso},
+                  {"f_number", rig.scan.f_number},
+                  {"sessions", rig.scan.sessions.string()}});
 }
 
-std::string text_of(const capture::Rig& rig) {
-  return fmt::format(
-      "# A rig of weft. Every key may be left out: docs/rig.md has them all.\n"
-      "name = {}\n"
-      "leds = {}\n"
-      "\n[board]\nport = {}\n"
-      "\n[camera]\nprofile = {}\nport = {}  # empty: found on USB\nserial = {}\n"
-      "\n[scan]\ncalibration = \"\"  # the folder that weft calibrate all makes\niso = {}\nf_number = {}\n"
-      "sessions = {}\n",
-      quoted(rig.name), rig.leds, quoted(rig.board.port), quoted(rig.camera.profile), quoted(rig.camera.port),
-      quoted(rig.camera.serial), rig.scan.iso, rig.scan.f_number, quoted(rig.scan.sessions.string()));
+bool is_utf8(const std::string& text) {
+  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)) == text;
 }
 
 Result<int> make_rig(const NewRig& a, const CommonArguments& common) {
+  for (const auto& [option, text] :
+       {std::pair("name", a.name), {"--board", a.board_port}, {"--camera", a.camera_port}}) {
+    if (!is_utf8(text))
+      return Error{ErrorKind::kUsage, "no rig file can be written", option, "it is no UTF-8",
+                   "give another one"};
+  }
   if (is_there(a.output)) {
     return Error{ErrorKind::kCannotCreate, "there is such a file", a.output.string(), "it would be lost",
                  "name another with -o"};

@@ -42,7 +42,7 @@ void print_words(const library::Chain& chain) {
   print("  " + words_of(chain.verdict));
   for (const library::ChainLink& link : chain.links)
     print(fmt::format("  {:12} {}{}", link.name, words_of(link), age_of(link.written)));
-  if (!chain.is_fresh()) print(fmt::format("  to make what is not fresh: weft make {}", chain.session));
+  if (!chain.is_fresh) print(fmt::format("  to make what is not fresh: weft make {}", chain.session));
 }
 
 Result<int> status(const StatusArguments& a, const CommonArguments& common) {
@@ -52,7 +52,7 @@ Result<int> status(const StatusArguments& a, const CommonArguments& common) {
     const Result<Session> session = read_session(std::filesystem::absolute(folder).lexically_normal());
     if (!session) return session.error();
     const library::Chain chain = library::chain_of(*session);
-    is_fresh = is_fresh && chain.is_fresh();
+    is_fresh = is_fresh && chain.is_fresh;
     if (common.json) {
       chains.push_back(json_of(chain));
     } else {

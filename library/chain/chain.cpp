@@ -82,10 +82,13 @@ class SolvesOnDisk {
 
   // Why the solve is not what would be made of the session today.
   std::vector<std::string> why_stale(const std::string& id) {
-    std::vector<std::string> why = solve::why_stale(solves_, id);
+    const bool is_chosen = solves_.is_chosen && solves_.current_one()->id == id;
+    std::vector<std::string> why;
+    if (!is_chosen) why = solve::why_stale(solves_, id);
     const solve::ChoosableSolve* const found = solves_.find(id);
     if (found == nullptr) return why;
     if (!found->is_whole) why.emplace_back("not all of its maps were kept");
+    if (is_chosen) return why;
     const std::optional<SolveFacts>& facts = facts_of(*found);
     if (!facts) return why;
     if (facts->solver_version < kSolverVersion)
@@ -217,6 +220,13 @@ ScanVerdict verdict_of(const Session& session, const Chain& chain, SolvesOnDisk&
   return first;
 }
 
+bool is_all_fresh(const std::vector<ChainLink>& links) {
+  return std::ranges::all_of(links, [](const ChainLink& link) {
+    const bool is_not_wanted = link.name == "export" && link.freshness == Freshness::kMissing;
+    return link.freshness == Freshness::kFresh || is_not_wanted;
+  });
+}
+
 // Folders that hold an export: export/PRESET, and export/PRESET/MAPS as batches write them.
 std::vector<fs::path> export_folders(const Session& session) {
   std::vector<fs::path> found;
@@ -271,6 +281,8 @@ void describe(Fields& fields, Chain& chain) {
   fields.value({"session", "Its folder", {}, kMustSay}, chain.session);
   fields.value({"fabric", "Of the cloth", {}, kMustSay}, chain.fabric);
   fields.object({"verdict", "What the scan is worth, and the one thing to do", {}, kMustSay}, chain.verdict);
+  fields.value({"fresh", "Nothing is missing, a draft or stale, but exports that nobody made", {}, kMustSay},
+               chain.is_fresh);
   fields.list({"links", "From photographs to exports, in this order", {}, kMustSay}, chain.links);
 }
 
@@ -278,13 +290,6 @@ Json json_of(const Chain& chain) {
   Json json = {{"schema", fmt::format("{}/1", kChainSchema)}};
   write_fields(json, chain);
   return json;
-}
-
-bool Chain::is_fresh() const {
-  return std::ranges::all_of(links, [](const ChainLink& link) {
-    const bool is_not_wanted = link.name == "export" && link.freshness == Freshness::kMissing;
-    return link.freshness == Freshness::kFresh || is_not_wanted;
-  });
 }
 
 const ChainLink& Chain::link(const std::string& name) const {
@@ -296,13 +301,18 @@ Chain chain_of(const Session& session) {
   Chain chain = {.session = session.folder.string(), .fabric = session.fabric, .links = {}};
   chain.links = {photographs_of(session), solve_link(solves), maps_link(solves)};
   const ChainLink maps = chain.links.back();
+  std::map<std::string, ChainLink> exports;  // the newest of each preset
   for (const fs::path& folder : export_folders(session)) {
     const Result<exchange::ExportFacts> facts = exchange::read_export(folder);
-    if (facts) chain.links.push_back(export_link(folder, *facts, maps, solves));
+    if (!facts) continue;
+    ChainLink link = export_link(folder, *facts, maps, solves);
+    ChainLink& newest = exports[link.id];
+    if (newest.written <= link.written) newest = std::move(link);
   }
-  if (chain.links.back().name != "export")
-    chain.links.push_back({.name = "export", .why = {"nothing was exported"}});
+  for (auto& [preset, link] : exports) chain.links.push_back(std::move(link));
+  if (exports.empty()) chain.links.push_back({.name = "export", .why = {"nothing was exported"}});
   for (ChainLink& link : chain.links) link.says = what_it_is(link);
+  chain.is_fresh = is_all_fresh(chain.links);
   chain.verdict = verdict_of(session, chain, solves);
   return chain;
 }

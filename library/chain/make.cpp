@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "exchange/export/export.h"
 #include "exchange/export/preset_files.h"
+#include "library/catalogue/metadata.h"
 #include "material/run/maps.h"
 #include "material/run/session_sets.h"
 #include "solve/report/solve_report.h"
@@ -36,6 +36,7 @@ class Making {
 
  private:
   Result<solve::LevelPrice> priced_level();
+  Result<void> make_current();
   std::vector<std::string> presets_wanted() const;
   material::MapsOptions maps_like_the_newest(const solve::SessionSolves& solves) const;
   void tell_step(std::string step);
@@ -99,7 +100,9 @@ Result<void> Making::make_solve() {
   } else {
     const Result<solve::LevelPrice> level = priced_level();
     if (!level) return level.error();
-    if (is_fresh && level->name() == link.level) return {};
+    const bool is_no_better = is_fresh && link.mean_deg && link.solved &&
+                              level->error.of_whole_deg() >= deg_of_whole(*link.mean_deg, *link.solved);
+    if (is_fresh && (is_no_better || level->name() == link.level)) return {};
     how.method = level->name();
     how.foretold = solve::price_of(*level);
     tell_step(fmt::format("solve it at {}: {} in {:.3g} s foretold{}", level->name(),
@@ -112,7 +115,15 @@ Result<void> Making::make_solve() {
       solve::solve_session({.folder = session_.folder, .calibration = {}, .leds = {}}, how, context_);
   if (!solved) return solved.error();
   solve_ = solved->facts.id;
-  report_.made.push_back({"solve", solve_, solved->folder, watch.lap()});
+  if (!solved->was_there) report_.made.push_back({"solve", solve_, solved->folder, watch.lap()});
+  return make_current();
+}
+
+// Another may be chosen, or stand higher; what is made of the session is made of this one.
+Result<void> Making::make_current() {
+  if (solve::current_solve(session_) == solve_) return {};
+  const Result<MetadataChange> changed = change_metadata(session_.folder, {{"current_solve", solve_}});
+  if (!changed) return changed.error();
   return {};
 }
 
@@ -144,33 +155,36 @@ Result<void> Making::make_maps() {
   const Result<material::MapsReport> made = material::make_maps(how, context_);
   if (!made) return made.error();
   maps_ = made->folder;
-  report_.made.push_back({"maps", made->facts.id, maps_, watch.lap()});
+  if (!made->was_there) report_.made.push_back({"maps", made->facts.id, maps_, watch.lap()});
   return {};
 }
 
+// What was exported before, as far as its preset is there yet.
 std::vector<std::string> Making::presets_wanted() const {
   if (!options_.presets.empty()) return options_.presets;
-  std::set<std::string> before;
+  std::vector<std::string> before;
   for (const ChainLink& link : before_.links) {
-    if (link.name == "export" && !link.id.empty()) before.insert(link.id);
+    if (link.name == "export" && !link.id.empty() && exchange::read_preset(link.id))
+      before.push_back(link.id);
   }
-  return {before.begin(), before.end()};
+  return before;
 }
 
 Result<void> Making::export_all() {
   for (const std::string& preset : presets_wanted()) {
-    const auto link = std::ranges::find_if(before_.links, [&](const ChainLink& each) {
-      return each.name == "export" && each.id == preset &&
-             fs::path(each.folder).parent_path() == session_.folder / "export";
-    });
+    const auto link = std::ranges::find_if(
+        before_.links, [&](const ChainLink& each) { return each.name == "export" && each.id == preset; });
     const bool is_known = link != before_.links.end();
     if (!is_new_ && is_known && link->freshness == Freshness::kFresh) continue;
-    tell_step(fmt::format("export {}{}", preset, is_known && !link->why.empty() ? " again" : ""));
+    tell_step(fmt::format("export {}{}", preset, is_known ? " again" : ""));
     if (options_.only_explains) continue;
     Stopwatch watch;
     exchange::ExportOptions how;
     how.input = maps_;
     how.presets = {preset};
+    // Beside those that a batch left there.
+    const bool is_of_batch = is_known && fs::path(link->folder).parent_path().filename() == preset;
+    if (is_of_batch) how.output = session_.folder / "export" / preset / maps_.filename();
     const Result<std::vector<exchange::ExportReport>> made = exchange::export_maps(how, context_);
     if (!made) return made.error();
     if (!made->front().was_there)

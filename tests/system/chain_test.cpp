@@ -3,18 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/base/files.h"
 #include "core/rig/session.h"
 #include "core/solve/solve_record.h"
-#include "tests/system/program.h"
-#include "tests/system/samples.h"
-#include "tests/system/workspace.h"
+#include "tests/system/typed_session.h"
 
 namespace weft::test {
 namespace {
@@ -25,29 +21,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-class Chain : public testing::Test {
+class Chain : public TypedSession {
  protected:
-  Chain() {
-    setenv("XDG_CACHE_HOME", (work_ / "cache").c_str(), 1);
-    setenv("XDG_STATE_HOME", (work_ / "state").c_str(), 1);
-  }
-  ~Chain() override {
-    for (const char* name : {"XDG_CACHE_HOME", "XDG_STATE_HOME"}) unsetenv(name);
-  }
-  void SetUp() override { simulate(scene_named("twill", {192, 128}), session_); }
-
-  // In the folder that holds the session, as a person types it.
-  Outcome weft(const std::string& line) const {
-    std::istringstream words(line);
-    std::vector<std::string> arguments;
-    for (std::string word; words >> word;) arguments.push_back(word);
-    return run_weft(arguments, {.folder = work_.path()});
-  }
-  Json json_of(const std::string& line) const {
-    const Outcome outcome = weft(line + " --json -q");
-    EXPECT_EQ(outcome.exit_code, 0) << line << ": " << outcome.error;
-    return Json::parse(outcome.output, nullptr, false);
-  }
   Json links() const { return json_of("status cloth.weft")["sessions"][0]["links"]; }
   static std::vector<std::string> freshness_of(const Json& links) {
     std::vector<std::string> all;
@@ -61,25 +36,6 @@ class Chain : public testing::Test {
     for (const Json& made : report["made"]) all.push_back(made["name"]);
     return all;
   }
-  // As the camera took the first lit shot once more.
-  void photograph_again() const {
-    edit_json(session_ / "session.json", [&](Json& json) {
-      const int index = static_cast<int>(json["shots"].size());
-      for (Json& shot : json["shots"]) {
-        if (shot["role"] != "lit") continue;
-        Json again = shot;
-        shot["superseded_by"] = index;
-        again["index"] = index;
-        again["file"] = "raw/again.dng";
-        fs::copy(session_ / shot["file"].get<std::string>(), session_ / "raw/again.dng");
-        json["shots"].push_back(again);
-        return;
-      }
-    });
-  }
-
-  Workspace work_;
-  const fs::path session_ = work_ / "cloth.weft";
 };
 
 TEST_F(Chain, IsMadeToItsEndAndNothingTwice) {
@@ -109,7 +65,7 @@ TEST_F(Chain, IsMadeToItsEndAndNothingTwice) {
 
 TEST_F(Chain, IsStaleFromTheFirstThingThatChangedAndMadeAgainFromThere) {
   json_of("make cloth.weft --preset png16");
-  photograph_again();
+  photograph_again(3);
   EXPECT_THAT(freshness(), ElementsAre("fresh", "stale", "stale", "stale"));
   for (const std::size_t link : {1U, 2U, 3U})
     EXPECT_THAT(why(link), HasSubstr("was photographed again since"));
@@ -172,6 +128,34 @@ TEST_F(Chain, SaysInOneLineWhatTheScanIsWorthAndWhatToDo) {
   EXPECT_THAT(weft("status cloth.weft").output, HasSubstr("take it again: All 10 LEDs are dark"));
   edit_json(session_ / "session.json", [](Json& json) { json["state"] = "capturing"; });
   EXPECT_EQ(verdict()["grade"], "unfinished") << verdict();
+}
+
+TEST_F(Chain, KeepsWhatAPersonChoseAndWhatIsBetterThanAskedFor) {
+  const std::string fast = json_of("solve cloth.weft --quality fast")["id"];
+  json_of("make cloth.weft --preset png16");
+  ASSERT_EQ(json_of("solve cloth.weft --quality robust")["was_there"], false);
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "fresh", "stale", "stale")) << "a better solve is current";
+  EXPECT_EQ(weft("library tag cloth.weft --set current_solve=" + fast).exit_code, 0);
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "fresh", "fresh", "fresh")) << "a person chose the other";
+  EXPECT_THAT(json_of("make cloth.weft")["steps"], IsEmpty());
+
+  json_of("solve cloth.weft --quality reference");
+  edit_json(session_ / "session.json", [](Json& json) { json.erase("current_solve"); });
+  json_of("make cloth.weft");
+  EXPECT_EQ(links()[1]["level"], "reference");
+  EXPECT_THAT(json_of("make cloth.weft --within 100")["made"], IsEmpty()) << "nothing that quick is better";
+}
+
+TEST_F(Chain, MakesAgainWhatABatchExportedInItsPlace) {
+  json_of("make cloth.weft");
+  const std::string maps = links()[2]["folder"], id = links()[2]["id"];
+  ASSERT_EQ(weft("export " + maps + " --preset png16 -o cloth.weft/export/png16/" + id).exit_code, 0);
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "fresh", "fresh", "fresh"));
+  photograph_again(3);
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "stale", "stale", "stale"));
+  EXPECT_THAT(names_of(json_of("make cloth.weft")), ElementsAre("solve", "maps", "export"));
+  EXPECT_THAT(freshness(), ElementsAre("fresh", "fresh", "fresh", "fresh"));
+  EXPECT_TRUE(fs::exists(session_ / "export/png16" / links()[2]["id"].get<std::string>() / "export.json"));
 }
 
 TEST_F(Chain, IsRefusedBeforeAnythingIsMade) {

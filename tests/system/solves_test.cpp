@@ -5,9 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,9 +13,7 @@
 #include "core/rig/session.h"
 #include "solve/report/solve_report.h"
 #include "solver/method.h"
-#include "tests/system/program.h"
-#include "tests/system/samples.h"
-#include "tests/system/workspace.h"
+#include "tests/system/typed_session.h"
 
 namespace weft::test {
 namespace {
@@ -27,36 +23,13 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-class Solves : public testing::Test {
+class Solves : public TypedSession {
  protected:
-  Solves() {
-    setenv("XDG_CACHE_HOME", (work_ / "cache").c_str(), 1);
-    setenv("XDG_STATE_HOME", (work_ / "state").c_str(), 1);
-  }
-  ~Solves() override {
-    for (const char* name : {"XDG_CACHE_HOME", "XDG_STATE_HOME"}) unsetenv(name);
-  }
-  void SetUp() override { simulate(scene_named("twill", {192, 128}), session_); }
-
-  // In the folder that holds the session, as a person types it.
-  Outcome weft(const std::string& line) const {
-    std::istringstream words(line);
-    std::vector<std::string> arguments;
-    for (std::string word; words >> word;) arguments.push_back(word);
-    arguments.emplace_back("-q");
-    return run_weft(arguments, {.folder = work_.path()});
-  }
-  std::string output_of(const std::string& line) const {
-    const Outcome outcome = weft(line);
-    EXPECT_EQ(outcome.exit_code, 0) << line << ": " << outcome.error;
-    return outcome.output;
-  }
-  Json json_of(const std::string& line) const { return Json::parse(output_of(line + " --json")); }
   std::string solved(const std::string& level) const {
     return json_of("solve cloth.weft --no-previews --quality " + level)["id"];
   }
   void expect_refused(const std::string& line, int exit_code, const std::string& words) const {
-    const Outcome outcome = weft(line);
+    const Outcome outcome = weft(line + " -q");
     EXPECT_EQ(outcome.exit_code, exit_code) << line << outcome.output;
     EXPECT_THAT(outcome.error, HasSubstr(words)) << line;
   }
@@ -75,25 +48,6 @@ class Solves : public testing::Test {
     if (command.ends_with('.')) command.pop_back();
     return command.substr(std::string("weft ").size());
   }
-  // Another photograph stands for that of the LED.
-  void photograph_again(int led) const {
-    edit_json(session_ / "session.json", [&](Json& json) {
-      const int index = static_cast<int>(json["shots"].size());
-      for (Json& shot : json["shots"]) {
-        if (shot["led"] != led || shot["role"] != "lit") continue;
-        Json again = shot;
-        shot["superseded_by"] = index;
-        again["index"] = index;
-        again["file"] = fmt::format("raw/{:02}_led{:02}.dng", index, led);
-        fs::copy(session_ / shot["file"].get<std::string>(), session_ / again["file"].get<std::string>());
-        json["shots"].push_back(again);
-        return;
-      }
-    });
-  }
-
-  Workspace work_;
-  const fs::path session_ = work_ / "cloth.weft";
 };
 
 TEST_F(Solves, OfAPreviewFeedNoMapUnlessItIsAskedForAndTheRemedyMakesOne) {

@@ -96,6 +96,9 @@ TEST_F(DoctorProgram, FindsNothingWrongWithARigFileThatRigNewWrote) {
   const ProgramRun examined = weft(" doctor --rig new.toml");
   EXPECT_EQ(examined.exit_code, 0) << examined.output;
   EXPECT_THAT(weft(make).output, HasSubstr("there is such a file")) << "nothing is lost";
+  const ProgramRun rubbish = weft(" rig new $(printf 'a\\377') -o rubbish.toml");
+  EXPECT_EQ(rubbish.exit_code, 64) << rubbish.output;
+  EXPECT_FALSE(fs::exists(folder_ / "rubbish.toml"));
 }
 
 }  // namespace

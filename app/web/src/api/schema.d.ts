@@ -6504,6 +6504,8 @@ export interface components {
             session: string;
             fabric: string;
             verdict: components["schemas"]["ScanVerdict"];
+            /** @description Nothing is missing, a draft or stale, but exports that nobody made */
+            fresh: boolean;
             links: components["schemas"]["ChainLink"][];
         };
         ScanVerdict: {

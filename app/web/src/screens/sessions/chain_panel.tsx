@@ -43,7 +43,7 @@ export function ChainPanel({session: of}: {session: Schemas['Session']}) {
   const job = jobs.value.find(({kind, of}) => kind === 'make' && of === session);
   const isRunning = job !== undefined && !hasEnded(job);
   const links = chain?.links ?? [];
-  const isFinal = links.every(({name, freshness}) => freshness === 'fresh' || (name === 'export' && freshness === 'missing'));
+  const isFinal = chain?.fresh ?? false;
   return (
     <section class="panel chain" aria-labelledby="chain-title">
       <h2 id="chain-title">From photographs to files</h2>
