@@ -69,6 +69,9 @@ id_of() {
   sed -n '1s/.*"id":"\([0-9a-f]*\)".*/\1/p' "$work/$1.jsonl"
 }
 
+# Reasons of what waits for a person: held, or what a node could not start while the controller was gone.
+held_words='JobHeld[A-Za-z]*|launch failed requeued held'
+
 # queued NAME FORMAT [STATE]: of a plan, a task a line.
 queued() {
   squeue -h -r -n "weft-$(id_of "$1")" -o "$2" ${3:+-t "$3"}
@@ -168,7 +171,7 @@ is_written_down() {
 # release COUNT: so many of the arrays that are held. Where tasks of one have ended, scontrol calls that a failure.
 release() {
   local array
-  for array in $(queued night '%F %r' PD | sed -n 's/ JobHeld[A-Za-z]*$//p' | sort -nu | head -n "$1"); do
+  for array in $(queued night '%F %r' PD | sed -nE "s/ ($held_words)\$//p" | sort -nu | head -n "$1"); do
     scontrol release "$array" >"$work/log/released.txt" 2>&1
   done
 }
@@ -234,7 +237,7 @@ lose_the_controller() {
 
 has_none_running() {
   local reasons
-  reasons=$(queued night %r) && [[ -n $reasons ]] && ! grep -qv '^JobHeld' <<<"$reasons"
+  reasons=$(queued night %r) && [[ -n $reasons ]] && ! grep -qvE "^($held_words)$" <<<"$reasons"
 }
 
 # No task runs when it fills, so that those which meet it have solved nothing yet.
