@@ -188,6 +188,30 @@ std::vector<Fiducial> BareRig::fiducials() const {
   return fiducials;
 }
 
+std::vector<WhitePatch> BareRig::patches() const {
+  std::vector<WhitePatch> patches;
+  const Size frame = rig_.camera.size;
+  for (const TargetSettings& target : scene_.targets) {
+    const auto* paper = std::get_if<PaperSettings>(&target.pattern);
+    const Result<Target> placed = Target::make(target, scene_.seed, 0);
+    if (paper == nullptr || !placed) continue;
+    const double x_mm = paper->width_mm / 2, y_mm = paper->height_mm / 2;
+    WhitePatch patch;
+    for (const Vec3 corner : {placed->place_mm(-x_mm, y_mm), placed->place_mm(x_mm, y_mm),
+                              placed->place_mm(x_mm, -y_mm), placed->place_mm(-x_mm, -y_mm)}) {
+      const Vec3 p = project(rig_.camera, corner);
+      if (p.x >= 0 && p.y >= 0 && p.x <= frame.width - 1 && p.y <= frame.height - 1)
+        patch.polygon_px.push_back({p.x, p.y});
+    }
+    if (patch.polygon_px.size() < 4) continue;
+    patch.reflectance_rgb.fill(target.white);
+    patch.delta = target.sheet.non_lambertian;
+    patch.height_mm = target.centre_mm.z;
+    patches.push_back(std::move(patch));
+  }
+  return patches;
+}
+
 std::vector<Vec3> BareRig::taped(double error_mm, std::int64_t seed) const {
   constexpr std::uint32_t kTapeStream = 1;
   std::vector<Vec3> positions_mm;

@@ -48,6 +48,8 @@ class BareRig {
 
   /// The tags that stay on the table, exactly.
   std::vector<Fiducial> fiducials() const;
+  /// The white patches that stay on the table and lie in the frame, exactly.
+  std::vector<WhitePatch> patches() const;
 
   /// LED positions as a tape measure gives them: each off by `error_mm` in a random direction.
   std::vector<Vec3> taped(double error_mm, std::int64_t seed) const;

@@ -172,7 +172,10 @@ Result<void> RigFolder::write(const LightFrames& frames, const simulator::BareRi
   Result<Calibration> known = files.is_bare ? rig.start(taped_mm) : exactly_known(frames, files.polariser);
   if (!known) return std::move(known).error();
   known->subject.camera_serial = files.camera_serial;
-  if (!files.is_bare) known->fiducials = rig.fiducials();
+  if (!files.is_bare) {
+    known->fiducials = rig.fiducials();
+    known->patches = rig.patches();
+  }
   const Result<Calibration> written = write_calibration(path_ / "calibration", std::move(*known));
   if (!written) return written.error();
   if (Result<void> ok = write_things(rig, files.is_bare); !ok) return ok;

@@ -143,10 +143,10 @@ void print_plan(const library::PlanBatchReport& report) {
   const library::BatchHeader& header = plan.header;
   print("level       node-hours of all   degrees        of  spread  planned");
   for (const library::LevelTotal& level : header.levels) {
-    const std::string error =
-        header.sampled > 0 ? fmt::format("{:>9.3g} {:>9} {:>7.2g}", level.mean_deg,
-                                         solve::share_in_words(level.solved.value_or(1)), level.spread_deg)
-                           : fmt::format("{:>9} {:>9} {:>7}", "-", "-", "-");
+    const std::string error = header.sampled > 0
+                                  ? fmt::format("{:>9.3g} {:>9} {:>7.2g}", level.mean_deg,
+                                                share_in_words(level.solved.value_or(1)), level.spread_deg)
+                                  : fmt::format("{:>9} {:>9} {:>7}", "-", "-", "-");
     print(fmt::format("{:<10} {:>18.3g} {} {:>8}", level.quality, level.hours, error, level.sessions));
   }
   if (!header.curve.empty())
@@ -155,11 +155,11 @@ void print_plan(const library::PlanBatchReport& report) {
   for (const library::Spent& spent : header.curve)
     print(fmt::format("  {:>9.3g} {:>9.3g}", spent.hours, spent.mean_deg));
   const PlanSums sums = sums_of(plan);
-  print(fmt::format("sessions {}, tasks {}: {}, {}, {:.3g} GB read, {:.3g} GB written, {} MB of memory",
-                    header.sessions, header.tasks.size(), hours_words(sums.hours),
-                    header.sampled > 0 ? solve::error_in_words(sums.error.degrees(), sums.error.solved())
-                                       : "no error foretold",
-                    sums.read_gb, sums.write_gb, sums.memory_bytes >> 20));
+  print(fmt::format(
+      "sessions {}, tasks {}: {}, {}, {:.3g} GB read, {:.3g} GB written, {} MB of memory", header.sessions,
+      header.tasks.size(), hours_words(sums.hours),
+      header.sampled > 0 ? error_in_words(sums.error.degrees(), sums.error.solved()) : "no error foretold",
+      sums.read_gb, sums.write_gb, sums.memory_bytes >> 20));
   print(
       fmt::format("  measured on {} of them in {:.3g} s, with {} threads; the rest of planning took {:.3g} s",
                   header.sampled, header.sample_seconds, header.threads, report.seconds));
@@ -170,7 +170,7 @@ void print_plan(const library::PlanBatchReport& report) {
     if (planned.forecast.solved < kLeastSolved)
       note(fmt::format("{}: only {} of its cloth will have a normal: scan it again",
                        std::filesystem::path(planned.session).stem().string(),
-                       solve::share_in_words(planned.forecast.solved)));
+                       share_in_words(planned.forecast.solved)));
   }
   print_left_out(plan);
   print(report.file.string());
@@ -239,9 +239,7 @@ std::string words_of(const library::TaskOutcome& outcome) {
           "{}: {}{}{}{}", name,
           outcome.state == library::TaskState::kThere ? "is there already"
                                                       : fmt::format("solved in {:.2f} s", outcome.seconds),
-          outcome.solved_share() < kLeastSolved ? fmt::format(", but only {} of its cloth has a normal",
-                                                              solve::share_in_words(outcome.solved_share()))
-                                                : "",
+          outcome.verdict ? ", " + words_of(*outcome.verdict) : "",
           outcome.change ? fmt::format(", turned by {:.3g} degrees", outcome.change->mean_deg) : "",
           outcome.change && library::regression_weight(*outcome.change) > 0
               ? fmt::format(", worse: {}", fmt::join(library::regressions(*outcome.change), "; "))

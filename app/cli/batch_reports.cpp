@@ -33,9 +33,9 @@ void print_state(const library::BatchSummary& s) {
         "  {:.3g} node-hours, {:.3g} predicted of these, {:.2f} times what it took; {}, predicted {}; {} MB "
         "at most",
         s.seconds / 3600, s.predicted_seconds / 3600, s.seconds_ratio(),
-        solve::error_in_words(s.error.degrees(), s.error.solved()),
-        solve::error_in_words(s.predicted_error.degrees(), s.predicted_error.solved()), s.peak_bytes >> 20));
-  if (!s.warned.empty()) print(fmt::format("  {} of those solved warn", s.warned.size()));
+        error_in_words(s.error.degrees(), s.error.solved()),
+        error_in_words(s.predicted_error.degrees(), s.predicted_error.solved()), s.peak_bytes >> 20));
+  if (const std::string grades = grades_in_words(s); !grades.empty()) print("  " + grades);
   for (const library::Cause& cause : s.causes)
     print(fmt::format("  {} {}: {}", cause.sessions, cause.sessions == 1 ? "session" : "sessions",
                       cause.example));

@@ -80,41 +80,43 @@ Result<void> solve_again(const std::vector<calibration::AffectedSession>& affect
   const std::string below = absolute_folder(calibration).lexically_relative(rig->folder()).string();
   int queued = 0;
   for (const calibration::AffectedSession& each : affected) {
-    if (!each.after_move) continue;
+    if (!each.is_concerned) continue;
     const Result<Json> job =
         daemon->post("/api/v1/jobs",
                      {{"kind", "solve"}, {"session", each.folder.stem().string()}, {"calibration", below}});
     if (!job) return job.error();
     ++queued;
   }
-  note(fmt::format("{} of {} sessions are solved again by {}; the others were perhaps taken before the move",
-                   queued, affected.size(), below));
+  note(
+      fmt::format("{} of {} sessions are solved again by {}; it explains the others no better, or they were "
+                  "perhaps taken "
+                  "before the move",
+                  queued, affected.size(), below));
   return {};
 }
 
 Run add_history(Options& options) {
   const auto a = std::make_shared<calibration::CalibrateHistoryOptions>();
-  const auto calibration = std::make_shared<std::filesystem::path>();
   options.add("rig", &a->rig, "Folder that holds calibrations and results of checks").required();
-  const Option affected =
-      options.add("--affected", &a->sessions,
-                  "Folder of sessions: lists those shot between the last check that passed and a move");
+  const Option affected = options.add(
+      "--affected", &a->sessions,
+      "Folder of sessions: lists those that a move spoiled, by what each shows of the rig (weft rig "
+      "check), else by its date");
   options.add("-o,--output", &a->output, "Folder to make for the page; default none");
   options
-      .add("--solve", calibration.get(),
-           "With --affected: the rig's daemon solves those taken after a move again, by this calibration")
+      .add("--solve", &a->calibration,
+           "With --affected: the rig's daemon solves those again that this calibration explains better")
       .needs(affected);
-  return run_step(
-      options, [a, calibration](const JobContext& context) -> Result<calibration::CalibrateOutcome> {
-        Result<calibration::CalibrationHistory> history = calibration::calibrate_history(*a, context);
-        if (!history) return std::move(history).error();
-        if (!calibration->empty()) {
-          if (Result<void> queued = solve_again(history->affected, a->rig, *calibration); !queued)
-            return std::move(queued).error();
-        }
-        return calibration::CalibrateOutcome{
-            a->output, {}, std::move(history->report), std::move(history->warnings)};
-      });
+  return run_step(options, [a](const JobContext& context) -> Result<calibration::CalibrateOutcome> {
+    Result<calibration::CalibrationHistory> history = calibration::calibrate_history(*a, context);
+    if (!history) return std::move(history).error();
+    if (!a->calibration.empty()) {
+      if (Result<void> queued = solve_again(history->affected, a->rig, a->calibration); !queued)
+        return std::move(queued).error();
+    }
+    return calibration::CalibrateOutcome{
+        a->output, {}, std::move(history->report), std::move(history->warnings)};
+  });
 }
 
 struct AcceptArguments {

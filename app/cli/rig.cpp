@@ -16,6 +16,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/opened_devices.h"
 #include "app/cli/print_rig_plan.h"
+#include "app/cli/rig_check.h"
 #include "app/cli/rig_new.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/rig_owner.h"
@@ -53,6 +54,8 @@ std::vector<int> chosen_leds(const capture::Rig& rig, const RigArguments& argume
 }
 
 Result<int> show_status(const capture::Rig& rig, const RigArguments&, const CommonArguments& common) {
+  const std::optional<SeenRig> seen = last_seen(rig);
+  if (seen && !common.json) print(fmt::format("rig     {}, by {}", seen->look.says, seen->session));
   const auto board = capture::open_board(rig);
   if (!board) return board.error();
   const capture::BoardFacts& lamps = (*board)->facts();
@@ -62,6 +65,7 @@ Result<int> show_status(const capture::Rig& rig, const RigArguments&, const Comm
   if (!facts) return facts.error();
   if (common.json) {
     print_json({{"rig", rig.name},
+                {"place", seen ? Json{{"says", seen->look.says}, {"session", seen->session}} : Json()},
                 {"board",
                  {{"port", rig.board.port},
                   {"firmware", fmt::format("{}.{}", lamps.firmware_major, lamps.firmware_minor)},
@@ -300,6 +304,7 @@ Verb rig_verb() {
       .verbs = {
           {"new", "Write a rig file that names the board and the camera that are plugged in", add_rig_new},
           {"status", "What board and camera say of themselves", add_rig_status},
+          {"check", "Has the rig moved since it was calibrated, by what scans show of it?", add_rig_check},
           {"lights", "Light the LEDs one after another", add_rig_lights},
           {"shot", "Take one photograph that is not kept: what is clipped, and a picture", add_rig_shot},
           {"plan", "What the LEDs tell of a cloth, and what one more, one moved or polarisers would",

@@ -19,6 +19,7 @@
 #include "app/server/api/bodies/scan_body.h"
 #include "app/server/http/error_reply.h"
 #include "app/server/rig/rig_lock.h"
+#include "calibration/run/rig_look.h"
 #include "capture/rig.h"
 #include "core/base/files.h"
 #include "core/base/percent.h"
@@ -179,6 +180,15 @@ fs::path solve_preview(const fs::path& session, const CommonArguments& common, J
   return {};
 }
 
+/// Holds the scan against its calibration, as a daemon's job does; without one there is nothing to hold it
+/// against, and the preview says so.
+void look_at_rig(const fs::path& folder, const CommonArguments& common) {
+  const Result<Session> session = read_session(folder);
+  if (!session || !is_there(session->calibration_folder())) return;
+  ProgressLine line(common.quiet);
+  static_cast<void>(calibration::look_at_scan(*session, {common.threads, stop_on_signal(), line.callback()}));
+}
+
 /// The call that takes the LED's shot of a finished session once more.
 Result<std::string> call_again(const fs::path& folder, int led) {
   if (folder.empty()) {
@@ -208,8 +218,9 @@ fs::path await_preview(const capture::Rig& rig, const std::string& owner, const 
     const Result<Json> page = client->get("/api/v1/jobs");
     if (!page) return {};
     const Json& jobs = page->at("jobs");
-    const auto job = std::ranges::find_if(
-        jobs, [&](const Json& each) { return each["of"] == session && each["by"] == "scan"; });
+    const auto job = std::ranges::find_if(jobs, [&](const Json& each) {
+      return each["of"] == session && each["by"] == "scan" && each["kind"] == "solve";
+    });
     if (job == jobs.end()) return {};
     const std::string state = job->at("state").get<std::string>();
     if (state == "done") return fs::path(job->at("result").value("folder", "")) / "sheet.png";
@@ -286,6 +297,7 @@ Result<int> scan(ScanArguments arguments, const CommonArguments& common) {
                  "run the same command again to finish it"};
   }
   Json warnings = status["warnings"];
+  if (!*owner) look_at_rig(session, common);
   const fs::path sheet = !arguments.preview ? fs::path()
                          : *owner           ? await_preview(*rig, **owner, session.stem(), common, warnings)
                                             : solve_preview(session, common, warnings);

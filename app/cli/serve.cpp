@@ -167,9 +167,9 @@ Result<int> serve(const ServeArguments& arguments, const CommonArguments& common
     if (*opened) return kDone;
   }
 
-  const Result<std::unique_ptr<RigServer>> server =
-      RigServer::start(*rig, capture::open_devices, run_scan_of,
-                       {.previews = rig->daemon.preview, .say = [](const std::string& line) { note(line); }});
+  const Result<std::unique_ptr<RigServer>> server = RigServer::start(
+      *rig, capture::open_devices, run_scan_of,
+      {.looks = true, .previews = rig->daemon.preview, .say = [](const std::string& line) { note(line); }});
   if (!server) return server.error();
   if (Result<void> said = say_address(**server, rig->name, common.json); !said)
     return std::move(said).error();

@@ -49,7 +49,7 @@ void print_words(const solve::Ladder& ladder, std::optional<std::size_t> chosen)
     print(fmt::format(
         "{:<10} {:>8} {:>9} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g}  {}",
         level.name(), level.error.solved > 0 ? fmt::format("{:.3g}", level.error.total_deg) : "-",
-        solve::share_in_words(level.error.solved), s.total(), s.read, s.prepare, s.solve, s.write, s.pictures,
+        share_in_words(level.error.solved), s.total(), s.read, s.prepare, s.solve, s.write, s.pictures,
         s.report, s.sync, chosen == i ? "<- chosen" : ""));
     if (!level.note.empty()) print("           " + level.note);
   }
@@ -89,8 +89,7 @@ Result<solve::LevelPrice> chosen_level(const solve::SolveRequest& arguments, con
   const solve::LevelPrice& level = ladder->levels[*chosen];
   if (!common.quiet) {
     note(fmt::format("chose {}: {} and {:.3g} s expected", level.name(),
-                     solve::error_in_words(level.error.total_deg, level.error.solved),
-                     level.seconds.total()));
+                     error_in_words(level.error.total_deg, level.error.solved), level.seconds.total()));
   }
   return level;
 }
@@ -159,10 +158,10 @@ Json json_of(const solve::SolveReport& report) {
 
 // What was got and paid, beside what was said before.
 void print_price(const SolvePrice& taken, const std::optional<SolvePrice>& foretold) {
-  print(fmt::format("  expected: {}", solve::error_in_words(taken.mean_deg, taken.solved)));
+  print(fmt::format("  expected: {}", error_in_words(taken.mean_deg, taken.solved)));
   if (!foretold) return;
   print(fmt::format("  foretold {} in {:.3g} s, {:.2f} times the {:.3g} s that it took",
-                    solve::error_in_words(foretold->mean_deg, foretold->solved), foretold->seconds,
+                    error_in_words(foretold->mean_deg, foretold->solved), foretold->seconds,
                     foretold->seconds / taken.seconds, taken.seconds));
 }
 

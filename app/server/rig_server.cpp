@@ -8,12 +8,14 @@
 #include <utility>
 
 #include "app/server/api/api.h"
+#include "app/server/api/bodies/job_kinds.h"
 #include "app/server/http/event_log.h"
 #include "app/server/page/served_page.h"
 #include "app/server/rig/attendance.h"
 #include "app/server/rig/controls.h"
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/rig_lock.h"
+#include "app/server/rig/rig_watch.h"
 #include "core/base/files.h"
 #include "core/base/process.h"
 #include "core/describe/field_json.h"
@@ -22,7 +24,7 @@
 namespace weft::app {
 namespace {
 
-constexpr const char* kScan = "scan";  // who asks for a preview
+constexpr const char* kScan = "scan";  // who asks for what is done with each scan
 
 // A job without what it made and where it waits, which is asked for by its id.
 Json event_of(const JobStatus& job) {
@@ -49,8 +51,10 @@ struct RigServer::State {
                    {[this] { keeper.tell_status(); }, [this](const TestShot& shot) { tell_shot(shot); }}),
         sets(rig, keeper, events),
         framing(rig),
+        watch(rig),
         keeper(rig, attendance, screens, std::move(run), events, log, pictures) {
     keeper.on_controls([this] { return controls.holder(); });
+    keeper.on_place([this] { return watch.place(); });
   }
 
   void tell_controls(const std::string& name) {
@@ -62,45 +66,60 @@ struct RigServer::State {
 
   void tell_shot(const TestShot& shot) { events.add("shot", document_of(shot, pictures)); }
 
-  /// By the calibration that the session was scanned with, where that suffices for a solve.
-  void solve_preview(const capture::ScanRequest& request) {
+  /// What is done with each finished scan: it is held against its calibration, then solved quickly, where
+  /// the calibration that it was scanned with suffices.
+  void look_at(const capture::ScanRequest& request, bool looks, bool previews) {
     const Result<Calibration> calibration = read_calibration(request.session / "calibration");
     if (!calibration || !calibration->camera || !calibration->lights || !calibration->response) return;
     const std::string session = request.session.string(), name = request.session.stem().string();
-    const Result<JobStatus> job = jobs->add({"solve",
-                                             name,
-                                             {"solve", session, "--quality", "preview"},
-                                             kScan,
-                                             "",
-                                             {session},
-                                             {{"session", name}, {"quality", "preview"}}});
+    if (previews)
+      add_first({"solve",
+                 name,
+                 {"solve", session, "--quality", "preview"},
+                 kScan,
+                 "",
+                 {session},
+                 {{"session", name}, {"quality", "preview"}}});
+    if (looks && std::holds_alternative<NearLights>(*calibration->lights))
+      add_first({kRigCheck, name, {"rig", "check", session}, kScan, "", {session}, {{"session", name}}});
+  }
+
+  void add_first(const JobSpec& spec) {
+    const Result<JobStatus> job = jobs->add(spec);
     if (!job) {
-      log.add("preview_failed", job.error().message(), {{"session", name}});
+      log.add("job_failed", job.error().message(), {{"session", spec.of}, {"kind", spec.kind}});
     } else {
       static_cast<void>(jobs->first(job->id));
     }
   }
 
-  Result<void> open_jobs_and_library(const std::filesystem::path& weft, bool previews) {
+  void job_changed(const JobStatus& job) {
+    events.add("job", event_of(job));
+    if (job.ended.empty()) return;
+    library->expire();
+    if (job.spec.kind != kRigCheck || job.state != JobState::kDone) return;
+    watch.saw(job.spec.arguments.back());
+    keeper.tell_status();
+  }
+
+  Result<void> open_jobs_and_library(const RigServerOptions& wish) {
     Result<std::unique_ptr<LibraryService>> shelves =
         LibraryService::open(lock.folder(), rig.scan.sessions, rig.daemon.archives);
     if (!shelves) return std::move(shelves).error();
     library = std::move(*shelves);
     JobQueueOptions options;
     options.folder = lock.folder() / "jobs";
-    options.program = weft.empty() ? program_beside("weft") : weft;
+    options.program = wish.weft.empty() ? program_beside("weft") : wish.weft;
     options.memory_bytes = available_memory_bytes() / 4 * 3;
-    options.changed = [this](const JobStatus& job) {
-      if (!job.ended.empty()) library->expire();
-      events.add("job", event_of(job));
-    };
+    options.changed = [this](const JobStatus& job) { job_changed(job); };
     Result<std::unique_ptr<JobQueue>> opened = JobQueue::open(std::move(options));
     if (!opened) return std::move(opened).error();
     jobs = std::move(*opened);
     keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
-    if (previews) keeper.on_scanned([this](const capture::ScanRequest& request) { solve_preview(request); });
+    keeper.on_scanned([this, looks = wish.looks, previews = wish.previews](
+                          const capture::ScanRequest& request) { look_at(request, looks, previews); });
     parts.emplace(RigParts{rig, lock.folder(), keeper, pictures, attendance, screens, scans, sets, framing,
-                           controls, *jobs, *library, views, pixels, guard});
+                           watch, controls, *jobs, *library, views, pixels, guard});
     return {};
   }
 
@@ -119,6 +138,7 @@ struct RigServer::State {
   Attendance attendance;
   SetKeeper sets;  // outlives what the keeper does for it
   FramingGuide framing;
+  RigWatch watch;
   RigKeeper keeper;
   std::optional<RigParts> parts;
   GuardRules guard;
@@ -157,8 +177,7 @@ Result<std::unique_ptr<RigServer>> RigServer::start(const capture::Rig& rig, cap
   if (!rules) return std::move(rules).error();
   auto state = std::make_unique<State>(rig, std::move(*lock), std::move(open), std::move(run), options.say);
   state->guard = *rules;
-  if (Result<void> ok = state->open_jobs_and_library(options.weft, options.previews); !ok)
-    return std::move(ok).error();
+  if (Result<void> ok = state->open_jobs_and_library(options); !ok) return std::move(ok).error();
   std::vector<Route> routes = api_routes(*state->parts);
   for (Route& route : page_routes()) routes.push_back(std::move(route));
   Result<std::unique_ptr<HttpServer>> http =

@@ -19,8 +19,9 @@ struct RigServerOptions {
   /// Where the rig file names no token, the server makes one that clients of this user can read.
   bool own_token = false;
   std::filesystem::path weft = {};  ///< the program that jobs run; empty: weft beside this one
-  bool previews = false;            ///< a finished scan is solved once quickly, as the first of the jobs
-  Logbook::Say say = {};            ///< hears each line of its log; empty: nobody does
+  bool looks = false;     ///< a finished scan is held against its calibration, as the first of the jobs
+  bool previews = false;  ///< then it is solved once quickly
+  Logbook::Say say = {};  ///< hears each line of its log; empty: nobody does
 };
 
 /// One rig behind HTTP (docs/http.md): its lock, its scan, its sessions. Run by weft serve for as long as the

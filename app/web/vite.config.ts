@@ -35,6 +35,8 @@ export default defineConfig({
     modulePreload: {polyfill: false},
     reportCompressedSize: false,
     sourcemap: false,
+    minify: 'terser',  // a sixtieth smaller than esbuild makes it
+    terserOptions: {ecma: 2020, module: true, compress: {ecma: 2020, passes: 3, pure_getters: true, unsafe_arrows: true}},
     rollupOptions: {
       output: {
         chunkFileNames: ({name}) => `assets/${nameOf(name)}-[hash].js`,

@@ -15,6 +15,7 @@ Result<Rows> calibration_grey_table(const StudyOptions& options);
 Result<Rows> calibration_lights_table(const StudyOptions& options);
 Result<Rows> calibration_moved_table(const StudyOptions& options);
 Result<Rows> calibration_response_table(const StudyOptions& options);
+Result<Rows> calibration_watched_table(const StudyOptions& options);
 
 /// Writes the error of normals in rows of lights against minutes to `folder`/pictures/calibration_poses.svg.
 Result<void> write_calibration_docs(const std::filesystem::path& folder, const Rows& rows);

@@ -152,6 +152,7 @@ app::Run add_calibration(app::Options& options) {
         {.megapixels = 16, .runs = 5}},
        {"grey", "fluxes and white balances by a chart of greys", calibration_grey_table, {.runs = 200}},
        {"moved", "what moved since", calibration_moved_table, {.runs = 50}},
+       {"watched", "which knocks the scan after them tells", calibration_watched_table, {.runs = 200}},
        {"degenerate", "captures that cannot say what is asked", calibration_degenerate_table, {.runs = 20}},
        {"end-to-end", "what all of it together leaves of errors", calibration_end_to_end_table}});
   options

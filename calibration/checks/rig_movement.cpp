@@ -13,6 +13,7 @@
 #include "calibration/checks/light_at.h"
 #include "calibration/checks/rig_state.h"
 #include "calibration/lights/paper_model.h"
+#include "core/base/statistics.h"
 
 namespace weft::calibration {
 namespace {
@@ -248,6 +249,14 @@ std::optional<Vec3> solved_surface(const NearLights& before, Vec3 seen_at_mm, co
   return Vec3{n[0], n[1], n[2]};
 }
 
+/// ln of the green light of a LED on a place; nothing where it gives none.
+std::optional<double> log_irradiance(const NearLight& led, const LitPlace& place) {
+  const std::optional<LightAt> light = light_at(led, place.point_mm);
+  const double cosine = light ? dot(light->direction, place.normal) : 0;
+  if (!(cosine > 0) || !(led.flux_rgb[1] > 0)) return std::nullopt;
+  return std::log(cosine * led.flux_rgb[1]) + light->log_geometry;
+}
+
 /// Mean, and the largest departure from it.
 void put_albedo(const std::vector<double>& albedo, MovementCost& cost) {
   if (albedo.empty()) return;
@@ -325,6 +334,28 @@ MovementCost cost_of(const CameraModel& camera_before, const NearLights& before,
   if (counted > 0) cost.mean_deg /= counted;
   put_albedo(flat_albedo, cost);
   return cost;
+}
+
+bool matters(const MovementCost& cost) {
+  return cost.mean_deg >= kLeastCost_deg || std::abs(cost.albedo_factor - 1) >= kLeastCostAlbedo ||
+         cost.albedo_unevenness >= kLeastCostAlbedo;
+}
+
+NearLights levelled(const NearLights& before, const NearLights& after, std::span<const LitPlace> places) {
+  NearLights lights = before;
+  for (std::size_t k = 0; k < std::min(before.leds.size(), after.leds.size()); ++k) {
+    std::vector<double> log_ratios;
+    for (const LitPlace& place : places) {
+      if (!place.on_table || place.reading_rgb.size() <= k || !(place.reading_rgb[k][1] > 0)) continue;
+      const std::optional<double> is = log_irradiance(after.leds[k], place),
+                                  was = log_irradiance(before.leds[k], place);
+      if (is && was) log_ratios.push_back(*is - *was);
+    }
+    if (log_ratios.empty()) continue;
+    const double factor = std::exp(median(std::move(log_ratios)));
+    for (double& flux : lights.leds[k].flux_rgb) flux *= factor;
+  }
+  return lights;
 }
 
 }  // namespace weft::calibration

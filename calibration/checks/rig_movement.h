@@ -39,7 +39,9 @@ struct LitPlace {
   int surface = 0;            ///< places of one surface share what is unknown of its reflectance
   double reflectance_sigma = 0;  ///< of the surface's reflectance, relative
   std::array<double, 3> reflectance_rgb = {1, 1, 1};
+  double delta = 0;  ///< it reflects 1 - delta (1 - n . l) of Lambert's law; 0: MovementOptions::paper_delta
   std::vector<std::array<double, 3>> reading_rgb;  ///< by LED; what is not a positive number is not used
+  double reading_sigma = 0;  ///< of each, relative: what few pixels leave of noise and grain
 };
 
 struct RigEvidence {
@@ -54,7 +56,7 @@ struct MovementOptions {
   double flicker = 0.003;         ///< of a LED's brightness, relative
   double reading_sigma = 0.0002;  ///< of a place's mean reading, relative
   double tilt_sigma_deg = 0.1;    ///< of a place against its normal: paper is not flat
-  double paper_delta = 0;         ///< places reflect 1 - delta (1 - n . l) of Lambert's law
+  double paper_delta = 0;         ///< LitPlace::delta of places that have none
   double least_evidence = 6;      ///< by which BIC must fall: strong (Kass and Raftery, JASA 1995)
   int most_changes = 4;
 };
@@ -117,5 +119,13 @@ struct MovementCost {
 };
 MovementCost cost_of(const CameraModel& camera_before, const NearLights& lights_before,
                      const CameraModel& camera_after, const NearLights& lights_after);
+
+/// From here on maps show it: what costs less is as likely the paper's waves.
+inline constexpr double kLeastCost_deg = 0.035, kLeastCostAlbedo = 0.01;
+bool matters(const MovementCost& cost);
+
+/// `before` with each LED as bright as these places on the table see it be, by the median, which is what a
+/// solve makes of white patches (solve/conditions/drift.h). Unchanged where there is none.
+NearLights levelled(const NearLights& before, const NearLights& after, std::span<const LitPlace> places);
 
 }  // namespace weft::calibration

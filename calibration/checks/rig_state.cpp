@@ -167,7 +167,8 @@ double RigModel::log_reading(const NearLights& lights, const RigState& state, co
     if (reading.channels[channel] > 0)
       log_flux += reading.channels[channel] * (std::log(led.flux_rgb[channel]) + lights.log_gain(k, c, u, v));
   }
-  const double paper = 1 - options_.paper_delta * (1 - cosine);
+  const double delta = place.delta != 0 ? place.delta : options_.paper_delta;
+  const double paper = 1 - delta * (1 - cosine);
   return log_flux + std::log(paper * cosine) + light->log_geometry + state.led_log_factor[k] +
          state.log_factor;
 }
@@ -215,7 +216,10 @@ Eigen::MatrixXd RigModel::covariance(const RigState& state) const {
     for (std::size_t j = 0; j < readings_.size(); ++j) {
       const Reading &a = readings_[i], &b = readings_[j];
       double& s = sum(first + static_cast<Eigen::Index>(i), first + static_cast<Eigen::Index>(j));
-      if (i == j) s += options_.reading_sigma * options_.reading_sigma;
+      if (i == j) {
+        const double few = places_[a.place].reading_sigma;
+        s += options_.reading_sigma * options_.reading_sigma + few * few;
+      }
       if (a.led == b.led) s += options_.flicker * options_.flicker;
       if (a.place == b.place) s += dot(by_tilt[i], by_tilt[j]);
       if (places_[a.place].surface == places_[b.place].surface)

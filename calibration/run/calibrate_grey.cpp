@@ -60,11 +60,12 @@ Result<std::vector<WhitePatch>> patches_in(const ScaleSettings& scale, const fs:
 Result<GreyChartFit> fit(Calibration calibration, const solve::Photographs& photographs,
                          const ScaleSettings& scale, std::vector<WhitePatch> patches) {
   calibration.patches = std::move(patches);
-  const auto evidence = rig_evidence(calibration, photographs);
-  if (!evidence) return evidence.error();
+  const Result<RigSightings> seen = sightings_in(calibration, photographs);
+  if (!seen) return seen.error();
+  const RigEvidence evidence = evidence_of(calibration, *seen);
   std::vector<GreyPatch> greys;
-  for (std::size_t i = 0; i < evidence->places.size(); ++i) {
-    const LitPlace& place = evidence->places[i];
+  for (std::size_t i = 0; i < evidence.places.size(); ++i) {
+    const LitPlace& place = evidence.places[i];
     greys.push_back({place.x_px, place.y_px, scale.reflectances[i], place.reading_rgb});
   }
   const NearLights& lights = std::get<NearLights>(*calibration.lights);

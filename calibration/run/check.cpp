@@ -308,13 +308,6 @@ std::string doubt_of(const Movement& movement) {
       movement.chi_square_after);
 }
 
-/// Whether maps would show it. What costs less is as likely the paper's waves.
-bool matters(const MovementCost& cost) {
-  constexpr double kLeast_deg = 0.02, kLeastAlbedo = 0.002;
-  return cost.worst_deg > kLeast_deg || std::abs(cost.albedo_factor - 1) > kLeastAlbedo ||
-         cost.albedo_unevenness > kLeastAlbedo;
-}
-
 CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
   CalibrationReport report;
   const Movement& movement = rig.movement;
@@ -407,8 +400,9 @@ Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
   const fs::path folder = options.from.empty() ? first / "calibration" : options.from;
   Look out = {{{}, {}, plan->calibration, folder}, loaded->conditions.warnings, plan->lit.front().time};
   const Calibration& calibration = out.rig.calibration;
-  Result<RigEvidence> evidence = rig_evidence(calibration, *loaded);
-  if (!evidence) return std::move(evidence).error();
+  const Result<RigSightings> sightings = sightings_in(calibration, *loaded);
+  if (!sightings) return sightings.error();
+  RigEvidence evidence = evidence_of(calibration, *sightings);
   MovementOptions settings = options.movement;
   double delta = reported_delta(folder);
   const bool is_set = first != options.session;
@@ -417,19 +411,19 @@ Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
         read_sheet_file(options.sheet.empty() ? options.session / "sheet.toml" : options.sheet);
     if (!sheet) return sheet.error();
     delta = sheet->delta.value_or(delta);
-    Result<void> added = add_sheet(*loaded, plan->size, first, calibration, *sheet, context, *evidence);
+    Result<void> added = add_sheet(*loaded, plan->size, first, calibration, *sheet, context, evidence);
     for (const fs::path& pose : std::span(*sessions).subspan(1)) {
       if (!added) break;
       const Result<solve::SolvePlan> another = solve::plan_session({pose, folder, {}});
       if (!another) return another.error();
       const Result<solve::Photographs> read = solve::load_photographs(*another, context);
       if (!read) return read.error();
-      added = add_sheet(*read, another->size, pose, calibration, *sheet, context, *evidence);
+      added = add_sheet(*read, another->size, pose, calibration, *sheet, context, evidence);
     }
     if (!added) return std::move(added).error();
   }
   settings.paper_delta = options.paper_delta.value_or(delta);
-  Result<Movement> movement = find_movement(calibration, *evidence, settings);
+  Result<Movement> movement = find_movement(calibration, evidence, settings);
   if (!movement) {
     Error error = movement.error();
     error.where = options.session.string();

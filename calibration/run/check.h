@@ -62,8 +62,8 @@ struct RigCheck {
 };
 Result<RigCheck> look_at_rig(const CheckRigOptions& options, const JobContext& context);
 
-/// The same with report and result. The verdicts name what happened, each with a remedy, where it costs more
-/// than 0.02 degrees or 0.2 percent of albedo.
+/// The same with report and result. The verdicts name what happened, each with a remedy, where its cost
+/// matters() (calibration/checks/rig_movement.h).
 Result<CalibrateOutcome> calibrate_check_rig(const CheckRigOptions& options, const JobContext& context);
 
 }  // namespace weft::calibration

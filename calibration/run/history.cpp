@@ -11,11 +11,14 @@
 
 #include "calibration/run/accept.h"
 #include "calibration/run/check_result.h"
+#include "calibration/run/folders_with.h"
 #include "calibration/run/movement_words.h"
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
 #include "core/rig/session.h"
+#include "core/solve/solve.h"
 #include "report/plot_svg.h"
+#include "solve/session/current.h"
 
 namespace weft::calibration {
 namespace {
@@ -46,24 +49,6 @@ struct Records {
   std::vector<DatedCheck> checks;
   std::vector<std::string> warnings;
 };
-
-/// Folders below `root` that hold a file of this name, in order of their paths; those inside sessions are
-/// copies and left out. kNoInput where `root` cannot be read.
-Result<std::vector<fs::path>> folders_with(const fs::path& root, const char* name) {
-  std::vector<fs::path> found;
-  std::error_code failed;
-  fs::recursive_directory_iterator walk(root, fs::directory_options::skip_permission_denied, failed), end;
-  for (; !failed && walk != end; walk.increment(failed)) {
-    std::error_code ignored;
-    if (!walk->is_directory(ignored)) continue;
-    if (is_there(walk->path() / name)) found.push_back(walk->path());
-    if (is_there(walk->path() / "session.json")) walk.disable_recursion_pending();
-  }
-  if (failed) return cannot_read(root, failed.value());
-  if (is_there(root / name)) found.push_back(root);
-  std::sort(found.begin(), found.end());
-  return found;
-}
 
 Result<void> read_calibrations(const fs::path& root, Records& records) {
   const Result<std::vector<fs::path>> folders = folders_with(root, "calibration.json");
@@ -314,7 +299,71 @@ const DatedCheck* check_against(const Records& records, const std::string& calib
   return against;
 }
 
-Result<void> find_affected(const fs::path& folder, const Records& records, CalibrationHistory& history) {
+/// The calibration that the rig has now.
+struct CalibrationNow {
+  fs::path folder;
+  std::string id;
+};
+
+CalibrationNow calibration_now(const CalibrateHistoryOptions& options, const Records& records,
+                               std::vector<std::string>& warnings) {
+  if (!options.calibration.empty()) {
+    const Result<Calibration> named = read_calibration(options.calibration);
+    if (named) return {options.calibration, named->id};
+    warnings.push_back(named.error().message());
+  }
+  const DatedCalibration& newest = records.calibrations.back();
+  return {options.rig / newest.name, newest.calibration.id};
+}
+
+bool is_solved_by(const Session& session, const std::string& calibration) {
+  const solve::SessionSolves solves = solve::solves_of(session);
+  const solve::ChoosableSolve* const current = solves.current_one();
+  if (current == nullptr) return false;
+  const Result<Json> document = read_json(current->folder / kSolveProduct.document, kSolveProduct.schema, 1);
+  const Json input = document ? document->value("input", Json()) : Json();
+  return input.is_object() && input.value("calibration", Json()) == Json(calibration);
+}
+
+/// Whether a look knows that what a check found is not so in its session.
+bool clears(const RigLook& look, const DatedCheck& failed) {
+  return !look.is_bad() && look.state != RigPlace::kUnseen &&
+         (failed.only_bodies_moved || !look.seen.patches.empty());
+}
+
+bool explains_better(const CalibrationNow& now, const RigLook& look) {
+  if (now.id == look.calibration) return false;
+  const Result<RigLook> by_now = look_by_another(look, now.folder);
+  if (!by_now) return false;
+  if (by_now->is_bad() != look.is_bad()) return look.is_bad();
+  return by_now->cost.mean_deg < look.cost.mean_deg && by_now->chi_square < 2 * look.chi_square;
+}
+
+/// How a session stands to the moves of its rig; nothing where it is not affected.
+std::optional<AffectedSession> affected(const Session& session, const std::string& time, double time_s,
+                                        const std::optional<RigLook>& look, const DatedCheck* check,
+                                        const CalibrationNow& now) {
+  const bool is_shown = look && look->is_bad();
+  if (!is_shown && (check == nullptr || (look && clears(*look, *check)))) return std::nullopt;
+  if (is_solved_by(session, now.id) && now.id != session.calibration_id) return std::nullopt;
+  AffectedSession found = {.folder = session.folder, .time = time};
+  if (look) found.says = look->says;
+  if (is_shown) {
+    found.predicted_mean_deg = look->cost.mean_deg;
+    found.predicted_worst_deg = look->cost.worst_deg;
+    found.after_move = true;
+    found.is_concerned = explains_better(now, *look);
+  } else {
+    found.predicted_mean_deg = check->mean_deg;
+    found.predicted_worst_deg = check->worst_deg;
+    found.after_move = check->time_s < time_s;
+    found.is_concerned = found.after_move && now.id != session.calibration_id;
+  }
+  return found;
+}
+
+Result<void> find_affected(const fs::path& folder, const Records& records, const CalibrationNow& now,
+                           CalibrationHistory& history) {
   const Result<std::vector<fs::path>> folders = folders_with(folder, "session.json");
   if (!folders) return folders.error();
   for (const fs::path& path : *folders) {
@@ -332,27 +381,65 @@ Result<void> find_affected(const fs::path& folder, const Records& records, Calib
           "{} says no time at which it was taken: whether a move affects it is not known", path.string()));
       continue;
     }
-    if (const DatedCheck* check = check_against(records, session->calibration_id, *time_s))
-      history.affected.push_back({path, time, check->mean_deg, check->worst_deg, check->time_s < *time_s});
+    const std::optional<RigLook> look = kept_look(*session);
+    if (look) history.looks.push_back({path, *look});
+    const DatedCheck* const check = check_against(records, session->calibration_id, *time_s);
+    if (const auto found = affected(*session, time, *time_s, look, check, now))
+      history.affected.push_back(*found);
   }
+  std::ranges::stable_sort(history.looks, {}, [](const DatedLook& each) { return each.look.taken; });
   return {};
+}
+
+/// What scanning on would have cost, scan by scan.
+report::Section looks_section(const std::vector<DatedLook>& all, Json& numbers) {
+  report::Section section = {"Scans", {}, report::Table{}, {}};
+  section.paragraphs = {
+      "What each scan shows of its rig beside the cloth, against the calibration that it was taken with."};
+  section.is_answer = true;
+  section.table->header = {"taken", "session", "state", "what is seen", "cost, degrees"};
+  report::PlotSeries cost = {.name = "cost"};
+  const double first_s = seconds_of_iso_time(all.front().look.taken).value_or(0);
+  for (const auto& [folder, look] : all) {
+    const char* const state = kRigPlaceNames[static_cast<std::size_t>(look.state)];
+    section.table->rows.push_back({look.taken, folder.stem().string(), state, look.says,
+                                   look.state == RigPlace::kUnseen ? "" : number(look.cost.mean_deg, 3)});
+    numbers["looks"].push_back({{"session", folder.stem().string()},
+                                {"taken", look.taken},
+                                {"state", state},
+                                {"says", look.says},
+                                {"cost_mean_deg", look.cost.mean_deg}});
+    if (look.state != RigPlace::kUnseen)
+      cost.points.push_back(
+          {(seconds_of_iso_time(look.taken).value_or(0) - first_s) / kDay_s, look.cost.mean_deg});
+  }
+  if (cost.points.size() > 1)
+    section.figures.push_back(
+        {"What scanning on would have cost",
+         report::plot_svg({.x_label = "days", .y_label = "degrees", .series = {cost}})});
+  return section;
 }
 
 report::Section affected_section(const std::vector<AffectedSession>& all, Json& numbers) {
   report::Section section = {"Affected sessions", {}, report::Table{}, {}};
   section.paragraphs = {
-      "These were taken after the last check that their calibration passed. Those up to the check that found "
-      "the move are perhaps from before it, and then have no error; those after that check are not. The "
-      "error "
-      "is that of a session taken after the move. Solve them again with the updated calibration and compare. "
-      "A check on sheets predicts no error of a session."};
+      "These show themselves that the rig had moved, or were taken after the last check that their "
+      "calibration passed and show nothing. Those up to the check that found the move are perhaps from "
+      "before it, and then have no error. Solve again those that the calibration of now explains better. A "
+      "check on sheets predicts no error of a session."};
   section.is_answer = true;
-  section.table->header = {"session", "taken", "after the move", "predicted mean error, degrees", "at worst"};
+  section.table->header = {"session",  "taken", "after the move", "predicted mean error, degrees",
+                           "at worst", "shows", "solve again"};
   numbers["affected"] = Json::array();
   for (const AffectedSession& each : all) {
     section.table->rows.push_back({each.folder.string(), each.time, each.after_move ? "yes" : "perhaps",
-                                   number(each.predicted_mean_deg, 2), number(each.predicted_worst_deg, 2)});
-    Json json = {{"session", each.folder.string()}, {"time", each.time}, {"after_move", each.after_move}};
+                                   number(each.predicted_mean_deg, 2), number(each.predicted_worst_deg, 2),
+                                   each.says, each.is_concerned ? "yes" : ""});
+    Json json = {{"session", each.folder.string()},
+                 {"time", each.time},
+                 {"after_move", each.after_move},
+                 {"says", each.says},
+                 {"concerned", each.is_concerned}};
     if (each.predicted_mean_deg) json["predicted_mean_deg"] = *each.predicted_mean_deg;
     if (each.predicted_worst_deg) json["predicted_worst_deg"] = *each.predicted_worst_deg;
     numbers["affected"].push_back(std::move(json));
@@ -399,8 +486,10 @@ Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& opti
   report.summary = fmt::format("{} calibration{} and {} check{}", calibrations, calibrations == 1 ? "" : "s",
                                checks, checks == 1 ? "" : "s");
   if (!options.sessions.empty()) {
-    if (Result<void> ok = find_affected(options.sessions, records, history); !ok)
+    const CalibrationNow now = calibration_now(options, records, history.warnings);
+    if (Result<void> ok = find_affected(options.sessions, records, now, history); !ok)
       return std::move(ok).error();
+    if (!history.looks.empty()) report.sections.push_back(looks_section(history.looks, report.numbers));
     report.sections.push_back(affected_section(history.affected, report.numbers));
     report.summary +=
         fmt::format(", {} of {} sessions affected by a move", history.affected.size(), history.sessions);

@@ -64,12 +64,16 @@ Rect box_of(const Polygon& polygon, Size frame) {
           within(y1 + 1, frame.height)};
 }
 
-// Mean reading of each channel; NaN where a photosite is full or none is there.
-std::array<double, 3> mean_in(const solve::Photographs& photographs, std::size_t k, const Polygon& polygon) {
+// Readings inside a polygon, photosite by photosite in one order for all photographs, and their channels.
+struct PatchReadings {
+  std::vector<double> values;
+  std::vector<std::size_t> channels;
+};
+
+PatchReadings readings_in(const solve::Photographs& photographs, std::size_t k, const Polygon& polygon) {
+  PatchReadings found;
   const Rect box = box_of(polygon, photographs.size);
-  if (box.width() <= 0 || box.height() <= 0) return {kNoReading, kNoReading, kNoReading};
-  std::array<double, 3> sum = {};
-  std::array<int, 3> count = {};
+  if (box.width() <= 0 || box.height() <= 0) return found;
   const solve::Planes planes = photographs.planes();
   Image<float> scratch({box.width(), box.height()});
   const std::vector<View<const float>> readings = readings_of(photographs.frames, k, box, scratch.plane());
@@ -77,15 +81,56 @@ std::array<double, 3> mean_in(const solve::Photographs& photographs, std::size_t
     for (int x = box.x0; x < box.x1; ++x) {
       if (!is_inside(polygon, x, y)) continue;
       for (std::size_t p = 0; p < readings.size(); ++p) {
-        const auto channel = static_cast<std::size_t>(planes.channel_at(static_cast<int>(p), x, y));
-        sum[channel] += readings[p](x - box.x0, y - box.y0);
-        ++count[channel];
+        found.values.push_back(readings[p](x - box.x0, y - box.y0));
+        found.channels.push_back(static_cast<std::size_t>(planes.channel_at(static_cast<int>(p), x, y)));
       }
     }
+  }
+  return found;
+}
+
+// Mean of each channel; NaN where a photosite is full or none is there.
+std::array<double, 3> mean_of(const PatchReadings& readings) {
+  std::array<double, 3> sum = {};
+  std::array<int, 3> count = {};
+  for (std::size_t i = 0; i < readings.values.size(); ++i) {
+    sum[readings.channels[i]] += readings.values[i];
+    ++count[readings.channels[i]];
   }
   for (std::size_t c = 0; c < 3; ++c)
     sum[c] = count[c] > 0 && std::isfinite(sum[c]) ? sum[c] / count[c] : kNoReading;
   return sum;
+}
+
+// How far the mean of all channels may be off, relative, by how photosites differ between photographs: the
+// paper's grain is in all of them alike.
+double sigma_of(const std::vector<PatchReadings>& all) {
+  std::vector<const PatchReadings*> read;
+  std::vector<std::array<double, 3>> means;
+  for (const PatchReadings& each : all) {
+    const std::array<double, 3> mean = mean_of(each);
+    if (!std::ranges::all_of(mean, [](double m) { return m > 0; })) continue;
+    read.push_back(&each);
+    means.push_back(mean);
+  }
+  if (read.size() < 2) return 0;
+  const std::vector<std::size_t>& channels = read.front()->channels;
+  std::array<double, 3> squares = {};
+  std::array<int, 3> count = {};
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    double sum = 0, sum_of_squares = 0;
+    for (std::size_t k = 0; k < read.size(); ++k) {
+      const double share = read[k]->values[i] / means[k][channels[i]];
+      sum += share;
+      sum_of_squares += share * share;
+    }
+    const auto n = static_cast<double>(read.size());
+    squares[channels[i]] += (sum_of_squares - sum * sum / n) / (n - 1);
+    ++count[channels[i]];
+  }
+  double sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) sum += squares[c] / count[c] / count[c];
+  return std::sqrt(std::max(sum, 0.0)) / 3;
 }
 
 }  // namespace
@@ -132,31 +177,66 @@ WhitePatch relocated(const WhitePatch& patch, const CameraModel& before, const C
   return out;
 }
 
-Result<RigEvidence> rig_evidence(const Calibration& calibration, const solve::Photographs& photographs) {
+namespace {
+
+double height_of(const WhitePatch& patch, const Calibration& calibration) {
+  return patch.height_mm.value_or(tag_height_mm(calibration.fiducials));
+}
+
+WhitePatch patch_now(const WhitePatch& patch, const Calibration& calibration, const CameraModel& now) {
+  return relocated(patch, *calibration.camera, now, height_of(patch, calibration));
+}
+
+// Where the camera is to the table; as calibrated where no tag tells.
+CameraModel camera_by_tags(const Calibration& calibration, const std::vector<TagSighting>& tags) {
+  const Result<Movement> moved = find_movement(calibration, {tags, {}});
+  return moved ? moved->camera : *calibration.camera;
+}
+
+}  // namespace
+
+Result<RigSightings> sightings_in(const Calibration& calibration, const solve::Photographs& photographs) {
   std::set<std::string> dictionaries;
   for (const Fiducial& fiducial : calibration.fiducials) dictionaries.insert(fiducial.dictionary);
-  const double plane_mm = tag_height_mm(calibration.fiducials);
   Result<std::vector<TagSighting>> tags = tags_in(photographs, {dictionaries.begin(), dictionaries.end()});
   if (!tags) return std::move(tags).error();
-  RigEvidence evidence = {std::move(*tags), {}};
-
-  CameraModel now = *calibration.camera;
-  if (const auto by_tags = find_movement(calibration, evidence)) now = by_tags->camera;
+  RigSightings seen = {std::move(*tags), {}};
+  const CameraModel now = camera_by_tags(calibration, seen.tags);
   for (const WhitePatch& patch : calibration.patches) {
     if (patch.polygon_px.size() < 3) continue;
-    const double height_mm = patch.height_mm.value_or(plane_mm);
-    const Polygon polygon = inside_of(relocated(patch, *calibration.camera, now, height_mm));
-    LitPlace& place = evidence.places.emplace_back();
+    const Polygon polygon = inside_of(patch_now(patch, calibration, now));
     const PixelPoint centre = centre_of(polygon);
-    place.point_mm = point_on_plane(now, centre.x, centre.y, height_mm);
+    SeenPatch& place = seen.patches.emplace_back();
     place.x_px = centre.x, place.y_px = centre.y;
+    place.reading_rgb.assign(light_count(*calibration.lights), {kNoReading, kNoReading, kNoReading});
+    std::vector<PatchReadings> readings;
+    for (std::size_t k = 0; k < photographs.count(); ++k) {
+      readings.push_back(readings_in(photographs, k, polygon));
+      place.reading_rgb[static_cast<std::size_t>(photographs.leds[k] - 1)] = mean_of(readings.back());
+    }
+    place.sigma = sigma_of(readings);
+  }
+  return seen;
+}
+
+RigEvidence evidence_of(const Calibration& calibration, const RigSightings& sightings) {
+  RigEvidence evidence = {sightings.tags, {}};
+  const CameraModel now = camera_by_tags(calibration, sightings.tags);
+  for (const WhitePatch& patch : calibration.patches) {
+    if (patch.polygon_px.size() < 3) continue;
+    const Polygon polygon = inside_of(patch_now(patch, calibration, now));
+    const auto seen = std::ranges::find_if(
+        sightings.patches, [&](const SeenPatch& each) { return is_inside(polygon, each.x_px, each.y_px); });
+    if (seen == sightings.patches.end()) continue;
+    LitPlace& place = evidence.places.emplace_back();
+    place.point_mm = point_on_plane(now, seen->x_px, seen->y_px, height_of(patch, calibration));
+    place.x_px = seen->x_px, place.y_px = seen->y_px;
     place.surface = static_cast<int>(evidence.places.size());
     place.reflectance_sigma = kPatchSigma;
     place.reflectance_rgb = patch.reflectance_rgb;
-    place.reading_rgb.assign(light_count(*calibration.lights), {kNoReading, kNoReading, kNoReading});
-    for (std::size_t k = 0; k < photographs.count(); ++k) {
-      place.reading_rgb[static_cast<std::size_t>(photographs.leds[k] - 1)] = mean_in(photographs, k, polygon);
-    }
+    place.delta = patch.delta;
+    place.reading_rgb = seen->reading_rgb;
+    place.reading_sigma = seen->sigma;
   }
   return evidence;
 }

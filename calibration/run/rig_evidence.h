@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -29,9 +30,25 @@ double tag_height_mm(const std::vector<Fiducial>& fiducials);
 WhitePatch relocated(const WhitePatch& patch, const CameraModel& before, const CameraModel& now,
                      double plane_mm);
 
-/// The tags that the calibration knows, and what its white patches read. Where tags say that the camera and
-/// the table moved to each other, the patches are looked for where they are now. `lights` of readings are
-/// those of `photographs.leds`; a LED that was left out has no reading.
-Result<RigEvidence> rig_evidence(const Calibration& calibration, const solve::Photographs& photographs);
+/// A white patch as it was read.
+struct SeenPatch {
+  double x_px = 0, y_px = 0;
+  /// By LED, of those of `photographs.leds`; NaN: it was left out, or the patch is full or not in the frame.
+  std::vector<std::array<double, 3>> reading_rgb = {};
+  double sigma = 0;  ///< LitPlace::reading_sigma
+};
+/// What photographs show of the rig, whatever calibration that is held against.
+struct RigSightings {
+  std::vector<TagSighting> tags;
+  std::vector<SeenPatch> patches;
+};
+
+/// Tags of the calibration's kinds, and what its white patches read. Where tags say that the camera and the
+/// table moved to each other, the patches are looked for where they are now.
+Result<RigSightings> sightings_in(const Calibration& calibration, const solve::Photographs& photographs);
+
+/// The same as evidence for or against a calibration, whose patches are paired with what was read inside
+/// them: another one than the photographs were taken with may have others.
+RigEvidence evidence_of(const Calibration& calibration, const RigSightings& sightings);
 
 }  // namespace weft::calibration

@@ -14,6 +14,8 @@
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
 #include "core/base/partial_name.h"
+#include "core/describe/field_json.h"
+#include "core/rig/scan_verdict.h"
 
 namespace weft::capture {
 namespace {
@@ -342,6 +344,7 @@ Result<void> Journal::finish(const std::vector<std::string>& warnings, const Jso
   after_step_("incoming removed");
   Session session = finished(warnings);
   if (!copy.is_null()) session.document["copy"] = copy;
+  session.document["verdict"] = object_of(verdict_of_photographs(session));
   Result<void> done = replace(std::move(session));
   after_step_("session complete");
   return done;

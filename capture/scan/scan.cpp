@@ -32,8 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kTimesWrong = 2;  // a shot whose light is wrong ends the scan
-constexpr double kSixthOfAStop = 0.116;
+constexpr int kTimesWrong = 2;                     // a shot whose light is wrong ends the scan
 constexpr double kMostRoom = 1e6;                  // of a frame without any light
 constexpr std::int64_t kUsualPixels = 16'500'000;  // of a camera that no calibration tells of
 
@@ -74,6 +73,11 @@ class Scan {
     Result<void> done = steps();
     const Result<void> off = shooter_.lamps_off();
     if (!done && request_.again && journal_) journal_->forget_incoming();
+    if (is_useless_ && frames_resumed_ == 0) {
+      journal_.reset();
+      std::error_code ignored;
+      fs::remove_all(request_.session, ignored);
+    }
     if (done && !off) warnings_.push_back("LEDs could not be switched off: " + off.error().message());
     if (!done) {
       const bool stopped = done.error().kind == ErrorKind::kInterrupted;
@@ -208,7 +212,9 @@ class Scan {
       if (!below_us) return below_us.error();
       record["below_us"] = times_.below_us = *below_us;
     }
-    warn_of_bracket();
+    for (std::string& warning :
+         bracket_warnings(list_, exposure_.exposure_us, times_.bracket_us, calibration_))
+      warnings_.push_back(std::move(warning));
     report_.change([&](ScanStatus& status) { status.exposure_us = exposure_.exposure_us; });
     return journal_->set_exposure(record);
   }
@@ -231,25 +237,6 @@ class Scan {
     exposure_ = of_session;
     report_.change([&](ScanStatus& status) { status.exposure_us = exposure_.exposure_us; });
     return {};
-  }
-
-  void warn_of_bracket() {
-    if (!list_.bracket) return;
-    const double ratio = times_.bracket_us / exposure_.exposure_us;
-    if (std::abs(std::log(ratio / *list_.bracket)) > kSixthOfAStop) {
-      warnings_.push_back(
-          fmt::format("the brackets are {:.3g} times the exposure, not {:.3g}: the camera has "
-                      "no shutter time nearer to that",
-                      ratio, *list_.bracket));
-    }
-    if (!calibration_ || !calibration_->response ||
-        calibration_->response->exposure_ratio(times_.bracket_us, exposure_.exposure_us)) {
-      return;
-    }
-    warnings_.push_back(
-        fmt::format("the calibration has no measured ratio of {} to {}, without which the brackets are not "
-                    "used: measure it with weft calibrate response",
-                    exposure_words(times_.bracket_us), exposure_words(exposure_.exposure_us)));
   }
 
   Result<Metering> metered() {
@@ -464,6 +451,13 @@ class Scan {
     Json notes = Json::object();
     if (verdict.level) notes["level"] = *verdict.level;
     note_exposure(shot, *frame, kept, notes);
+    if (const std::string useless = useless_words(shot, notes); !useless.empty()) {
+      is_useless_ = true;
+      return unusable(shot, "clipped",
+                      {ErrorKind::kUsage, "the cloth cannot be scanned at this exposure", where, useless,
+                       "scan it without an exposure, which is then metered"},
+                      {});
+    }
     if (!kept.warnings.empty()) notes["warnings"] = kept.warnings;
     Result<Shot> in_session = journal_->keep(shot, photograph, notes);
     if (!in_session) {
@@ -543,6 +537,14 @@ class Scan {
     set_exposed({clipped, std::min(of_its_time.longest_us(), kMostRoom)}, notes);
   }
 
+  /// Why the first lit frame says that all would be good for nothing. A metered exposure is as good as can
+  /// be.
+  std::string useless_words(const DueShot& shot, const Json& notes) const {
+    const bool is_first = shot.role == ShotRole::kLit && journal_->session().lit().empty();
+    if (!is_first || asked_us_ <= 0 || request_.any_exposure || request_.again) return "";
+    return why_useless(*exposed_in(notes), shot.exposure.exposure_us, list_.bracket.value_or(1));
+  }
+
   Result<void> finish() {
     report_.phase(ScanPhase::kFinishing);
     warnings_.insert(warnings_.end(), so_far_.warnings.begin(), so_far_.warnings.end());
@@ -582,7 +584,7 @@ class Scan {
   int frames_resumed_ = 0, frames_wrong_ = 0;
   std::map<int, int> times_wrong_;
   std::vector<std::string> warnings_;
-  bool has_room_ = false, is_odd_ = false;
+  bool has_room_ = false, is_odd_ = false, is_useless_ = false;
   FramesSoFar so_far_;  ///< away while a frame is on its way
 };
 

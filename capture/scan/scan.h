@@ -43,8 +43,10 @@ struct ScanRequest {
   std::filesystem::path calibration;  ///< folder, copied into the session; empty: none, and no light model
   ExposureSettings exposure;          ///< exposure_us 0: metered
   std::vector<int> leds;              ///< empty: all of the board
-  bool repeat = true;                 ///< the first LED and the dark shot once more at the end
-  std::optional<double> bracket;      ///< each LED once more at this times the exposure, 0.001 to 100
+  /// Goes on though the first lit frame of an exposure that was asked for is good for nothing.
+  bool any_exposure = false;
+  bool repeat = true;             ///< the first LED and the dark shot once more at the end
+  std::optional<double> bracket;  ///< each LED once more at this times the exposure, 0.001 to 100
   PolariserUse polariser;
   bool below = false;          ///< the cloth once by the light below it
   double below_us = 0;         ///< exposure of that; 0: metered

@@ -152,4 +152,26 @@ std::string name_of(const DueShot& shot) {
   return fmt::format("LED {}", shot.led);
 }
 
+std::vector<std::string> bracket_warnings(const ShotList& list, double exposure_us, double bracket_us,
+                                          const std::optional<Calibration>& calibration) {
+  constexpr double kSixthOfAStop = 0.116;
+  if (!list.bracket) return {};
+  std::vector<std::string> warnings;
+  const double ratio = bracket_us / exposure_us;
+  if (std::abs(std::log(ratio / *list.bracket)) > kSixthOfAStop) {
+    warnings.push_back(
+        fmt::format("the brackets are {:.3g} times the exposure, not {:.3g}: the camera has no shutter time "
+                    "nearer to that",
+                    ratio, *list.bracket));
+  }
+  if (!calibration || !calibration->response ||
+      calibration->response->exposure_ratio(bracket_us, exposure_us))
+    return warnings;
+  warnings.push_back(fmt::format(
+      "the calibration has no measured ratio of {} to {}, without which the brackets are not used: "
+      "measure it with weft calibrate response",
+      exposure_words(bracket_us), exposure_words(exposure_us)));
+  return warnings;
+}
+
 }  // namespace weft::capture

@@ -72,4 +72,8 @@ std::string nearest_time_words(double wanted_us, double settable_us);
 /// "LED 3", "the dark shot".
 std::string name_of(const DueShot& shot);
 
+/// That brackets are not what was asked for, or are of a time whose ratio to the exposure nobody measured.
+std::vector<std::string> bracket_warnings(const ShotList& list, double exposure_us, double bracket_us,
+                                          const std::optional<Calibration>& calibration);
+
 }  // namespace weft::capture

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/percent.h"
+#include "core/rig/exposure_words.h"
 
 namespace weft {
 namespace {
@@ -78,11 +79,24 @@ void set_exposed(const Exposed& exposed, Json& shot) {
 }
 
 std::optional<Exposed> exposed_of(const Shot& shot) {
-  const auto found = shot.document.find("exposed");
-  if (found == shot.document.end() || !found->is_object()) return std::nullopt;
+  return exposed_in(shot.document);
+}
+
+std::optional<Exposed> exposed_in(const Json& shot) {
+  const auto found = shot.find("exposed");
+  if (found == shot.end() || !found->is_object()) return std::nullopt;
   const Json clipped = found->value("clipped", Json()), room = found->value("room", Json());
   if (!clipped.is_number() || !room.is_number()) return std::nullopt;
   return Exposed{clipped.get<double>(), room.get<double>()};
+}
+
+std::string why_useless(const Exposed& exposed, double exposure_us, double bracket) {
+  const std::string time = exposure_words(exposure_us);
+  if (exposed.clipped >= kUselessFrom && bracket >= 1)
+    return fmt::format("{} percent of a channel are full at {}", percent_words(exposed.clipped), time);
+  if (exposed.room >= kUselessDarkFrom && bracket <= 1)
+    return fmt::format("it is dark: {:.0f} times {} would be right", exposed.room, time);
+  return "";
 }
 
 bool is_exposed_wrong(const Session& session) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <numbers>
 
+#include "core/base/percent.h"
 #include "core/describe/field_json.h"
 
 namespace weft {
@@ -130,6 +131,15 @@ Json json_of(const SolveFacts& facts) {
   Json json = {{"schema", fmt::format("{}/{}", kSolveProduct.schema, facts.taken ? "1.1" : "1")}};
   write_fields(json, facts);
   return json;
+}
+
+std::string share_in_words(double share) {
+  return share < 1 && share >= 0.995 ? "over 99 %" : percent_words(share) + " %";
+}
+
+std::string error_in_words(double mean_deg, double solved) {
+  if (!(solved > 0)) return "nothing solved";
+  return fmt::format("{:.3g} degrees on {} of the cloth", mean_deg, share_in_words(solved));
 }
 
 }  // namespace weft

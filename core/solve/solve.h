@@ -71,6 +71,11 @@ inline constexpr double kLeastSolved = 0.5;
 /// mean.
 double deg_of_whole(double mean_deg, double solved);
 
+/// "0.77 degrees on 98 % of the cloth", or "nothing solved".
+std::string error_in_words(double mean_deg, double solved);
+/// "98 %": 100 only of all.
+std::string share_in_words(double share);
+
 /// How far the photograph of one light had moved.
 struct RegisteredShot {
   int led = 0;

@@ -11,6 +11,7 @@
 
 #include "core/base/result.h"
 #include "core/describe/fields.h"
+#include "core/rig/scan_verdict.h"
 #include "library/batch/change.h"
 
 // What became of a session: a line of RESULTS/task-N.jsonl (weft.batch-result/1, docs/formats.md). Lines are
@@ -43,11 +44,12 @@ struct TaskOutcome {
   double unsolved = 0;                      ///< share of pixels
   /// Share of the cloth that has a normal; none in lines of early versions.
   std::optional<double> solved = {};
-  std::optional<double> left_out = {};     ///< rms of how left-out lights are predicted, a share
-  std::vector<std::string> warnings = {};  ///< by name
-  std::vector<std::string> made = {};      ///< folders of maps and exports
-  std::optional<MapChange> change = {};    ///< from the solve before
-  std::string no_change = {};              ///< why it could not be compared with the solve before
+  std::optional<double> left_out = {};      ///< rms of how left-out lights are predicted, a share
+  std::vector<std::string> warnings = {};   ///< by name
+  std::optional<ScanVerdict> verdict = {};  ///< on the scan, with this solve; none in early lines
+  std::vector<std::string> made = {};       ///< folders of maps and exports
+  std::optional<MapChange> change = {};     ///< from the solve before
+  std::string no_change = {};               ///< why it could not be compared with the solve before
 
   double solved_share() const { return solved.value_or(1 - unsolved); }
   bool is_result() const { return state != TaskState::kLost; }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "library/batch/summary.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <set>
@@ -136,7 +139,10 @@ BatchSummary summarize(std::span<const BatchRow> rows) {
     count(row, summary);
     if (row.is_missing()) missing.insert(row.planned->task);
     if (row.is_done() && row.result->solved_share() < kLeastSolved) summary.barely_solved.push_back(i);
-    if (row.is_done() && !row.result->warnings.empty()) summary.warned.push_back(i);
+    if (!row.is_done()) continue;
+    const std::optional<ScanVerdict>& verdict = row.result->verdict;
+    if (verdict) ++summary.grades[static_cast<std::size_t>(verdict->grade)];
+    if (verdict ? verdict->grade != Grade::kGood : !row.result->warnings.empty()) summary.warned.push_back(i);
     if (!row.is_done() || !row.result->change) continue;
     summary.changed.push_back(i);
     if (regression_weight(*row.result->change) > 0) ++summary.worse;
@@ -210,6 +216,18 @@ void describe(Fields& fields, BatchRow& row) {
   fields.only_if(row.is_done(), [&] { describe_done(fields, planned, outcome); });
 }
 
+std::string grades_in_words(const BatchSummary& summary) {
+  std::vector<std::string> words;
+  const auto add = [&](Grade grade, const char* name) {
+    if (const int count = summary.grades[static_cast<std::size_t>(grade)]; count > 0)
+      words.push_back(fmt::format("{} {}", count, name));
+  };
+  add(Grade::kGood, "good");
+  add(Grade::kUsable, "usable");
+  add(Grade::kAgain, "to be taken again");
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
 void describe(Fields& fields, SummaryDocument& document) {
   auto& [s, rows] = document;
   const auto names_of = [&rows = rows](const std::vector<std::size_t>& some) {
@@ -234,7 +252,11 @@ void describe(Fields& fields, SummaryDocument& document) {
   fields.value({"predicted_deg", "By the plan, degrees"}, predicted_deg);
   fields.value({"predicted_solved", "By the plan, a share"}, predicted_solved);
   fields.value({"barely_solved", "Sessions of which less than half is solved"}, barely);
-  fields.value({"warned", "Sessions whose solves warn"}, warned);
+  fields.value({"warned", "Sessions whose verdict is not good"}, warned);
+  fields.value({"good", "Sessions whose verdict is good"}, s.grades[static_cast<std::size_t>(Grade::kGood)]);
+  fields.value({"usable", "Sessions that are usable"}, s.grades[static_cast<std::size_t>(Grade::kUsable)]);
+  fields.value({"take_again", "Sessions to be taken again"},
+               s.grades[static_cast<std::size_t>(Grade::kAgain)]);
   fields.value({"peak_bytes", "Of memory, of the largest"}, s.peak_bytes);
   fields.list({"causes", "Of failures and missing ones, the most frequent first"}, s.causes);
   fields.list({"calibrations", "The most suspect first"}, s.calibrations);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -56,8 +57,9 @@ struct BatchSummary {
   double seconds = 0, predicted_seconds = 0;  ///< of solved sessions, node-seconds
   MeanError error, predicted_error;           ///< of solved sessions: as solves expect it, and as predicted
   std::uint64_t peak_bytes = 0;
-  std::vector<std::size_t> barely_solved;   ///< rows that are done and have under kLeastSolved of a cloth
-  std::vector<std::size_t> warned;          ///< rows that are done and whose solves warn
+  std::vector<std::size_t> barely_solved;  ///< rows that are done and have under kLeastSolved of a cloth
+  std::vector<std::size_t> warned;         ///< rows that are done and whose verdict is not good
+  std::array<int, kGradeNames.size()> grades = {};  ///< rows that are done, by Grade
   std::vector<Cause> causes;                ///< of failed and missing sessions, the most frequent first
   std::vector<std::size_t> changed;         ///< rows that were compared, the gravest first (is_graver)
   int worse = 0;                            ///< compared rows with regressions
@@ -74,6 +76,9 @@ struct BatchSummary {
 std::vector<BatchRow> rows_of(const BatchPlan& plan, const std::map<std::string, TaskHistory>& histories);
 
 BatchSummary summarize(std::span<const BatchRow> rows);
+
+/// "3 good, 1 usable, 1 to be taken again", without those of which there is none; empty where nobody judged.
+std::string grades_in_words(const BatchSummary& summary);
 
 /// What a batch came to, for programs.
 struct SummaryDocument {

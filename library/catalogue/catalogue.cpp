@@ -14,8 +14,11 @@
 #include "core/base/iso_time.h"
 #include "core/base/parallel.h"
 #include "core/describe/error_json.h"
+#include "core/describe/field_json.h"
+#include "core/rig/seen_rig.h"
 #include "core/solve/solve.h"
 #include "library/catalogue/session_files.h"
+#include "library/catalogue/session_verdict.h"
 #include "solve/session/current.h"
 
 namespace weft::library {
@@ -34,7 +37,7 @@ struct Found {
 namespace {
 
 // Raised whenever the tables change.
-constexpr int kVersion = 4;
+constexpr int kVersion = 5;
 constexpr std::size_t kMostRanked = 20'000;
 constexpr int kMostLimit = 1000;
 constexpr std::size_t kBatch = 500;  // of sessions that are written together, so that others write between
@@ -49,7 +52,7 @@ CREATE TABLE session(
   revision INTEGER, id TEXT, tags TEXT, composition TEXT, construction TEXT, side TEXT, notes TEXT,
   weight_g_m2 REAL, thickness_mm REAL,
   shots INTEGER, solves INTEGER, current_solve TEXT, taken TEXT, all_bytes INTEGER, warnings TEXT,
-  lit_shot INTEGER, lit_sha256 TEXT);
+  lit_shot INTEGER, lit_sha256 TEXT, grade INTEGER, says TEXT, action TEXT);
 CREATE INDEX session_unfinished ON session(rig, taken DESC, key DESC) WHERE state NOT IN ('complete', 'unreadable');
 CREATE INDEX session_taken ON session(taken DESC, key DESC);
 CREATE INDEX session_name ON session(name);
@@ -79,19 +82,20 @@ END;
 constexpr const char* kPut = R"(
 INSERT INTO session(folder, name, bytes, written, solved, fabric, rig, calibration, state, error, revision,
   id, tags, composition, construction, side, notes, weight_g_m2, thickness_mm, shots, solves,
-  current_solve, taken, all_bytes, warnings, lit_shot, lit_sha256)
+  current_solve, taken, all_bytes, warnings, lit_shot, lit_sha256, grade, says, action)
 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23,
-  ?24, ?25, ?26, ?27)
+  ?24, ?25, ?26, ?27, ?28, ?29, ?30)
 ON CONFLICT(folder) DO UPDATE SET
   bytes = ?3, written = ?4, solved = ?5, fabric = ?6, rig = ?7, calibration = ?8, state = ?9, error = ?10,
   revision = ?11, id = ?12, tags = ?13, composition = ?14, construction = ?15, side = ?16, notes = ?17,
   weight_g_m2 = ?18, thickness_mm = ?19, shots = ?20, solves = ?21, current_solve = ?22, taken = ?23,
-  all_bytes = ?24, warnings = ?25, lit_shot = ?26, lit_sha256 = ?27)";
+  all_bytes = ?24, warnings = ?25, lit_shot = ?26, lit_sha256 = ?27,
+  grade = ?28, says = ?29, action = ?30)";
 
 constexpr const char* kGet =
     "SELECT key, folder, name, fabric, rig, calibration, state, error, revision, id, tags, composition, "
     "construction, side, notes, weight_g_m2, thickness_mm, shots, solves, current_solve, taken, written, "
-    "all_bytes, warnings, lit_shot, lit_sha256 FROM session WHERE key = ?";
+    "all_bytes, warnings, lit_shot, lit_sha256, grade, says, action FROM session WHERE key = ?";
 
 std::int64_t nanoseconds(fs::file_time_type time) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -107,8 +111,10 @@ std::optional<Found> look_at(const fs::path& folder) {
   if (error) return {};
   found.written = nanoseconds(fs::last_write_time(document, error));
   if (error) return {};
-  const auto solved = fs::last_write_time(folder / "solve", error);
-  if (!error) found.solved = nanoseconds(solved);
+  for (const char* made : {"solve", kRigLookFile}) {
+    const auto written = fs::last_write_time(folder / made, error);
+    if (!error) found.solved = std::max(found.solved, nanoseconds(written));
+  }
   return found;
 }
 
@@ -158,6 +164,7 @@ Entry read_entry(const Found& found) {
   if (!session) {
     entry.state = "unreadable";
     entry.error = session.error();
+    entry.verdict = {Grade::kUnfinished, "it cannot be read: " + session.error().why, session.error().remedy};
     return entry;
   }
   Result<Metadata> metadata = metadata_of(*session);
@@ -178,6 +185,7 @@ Entry read_entry(const Found& found) {
   }
   if (!session->shots.empty() && !session->shots.front().time.empty())
     entry.taken = session->shots.front().time;
+  entry.verdict = verdict_of(*session);
   if (found.solved != 0) {
     entry.solves = static_cast<int>(list_solves(found.folder).size());
     entry.current_solve = solve::current_solve(*session);
@@ -200,6 +208,7 @@ Result<void> put_one(Statement& put, Statement& tag, const Found& found, const E
   put.bind(m.weight_g_m2).bind(m.thickness_mm).bind(std::int64_t{e.shots}).bind(std::int64_t{e.solves});
   put.bind(e.current_solve).bind(e.taken).bind(static_cast<std::int64_t>(e.bytes)).bind(joined(e.warnings));
   put.bind(std::int64_t{e.lit_shot}).bind(e.lit_sha256);
+  put.bind(static_cast<std::int64_t>(e.verdict.grade)).bind(e.verdict.says).bind(e.verdict.action);
   if (Result<void> ok = put.run(); !ok) return ok;
   for (const std::string& each : m.tags) {
     if (Result<void> ok = tag.bind(each).bind(folder).run(); !ok) return ok;
@@ -279,6 +288,7 @@ Json json_of(const Entry& e) {
                {"written", e.written},
                {"bytes", e.bytes},
                {"warnings", e.warnings},
+               {"verdict", object_of(e.verdict)},
                {"error", e.error ? weft::json_of(*e.error) : Json()}});
   return json;
 }
@@ -445,7 +455,7 @@ Result<std::vector<std::int64_t>> Catalogue::keys_of(const Query& query) {
     values.push_back(*match);
   }
   if (query.unfinished) only("s.state NOT IN ('complete', 'unreadable')");
-  if (query.warned) only("s.warnings <> ''");
+  if (query.warned) only(fmt::format("s.grade <> {}", static_cast<int>(Grade::kGood)).c_str());
   with("s.id = ?", query.id);
   with("s.key IN (SELECT key FROM tag WHERE tag = ?)", query.tag);
   with("s.state = ?", query.state);
@@ -505,6 +515,8 @@ Result<Entry> Catalogue::entry(std::int64_t key) {
   e.warnings = parted(get->text(23));
   e.lit_shot = static_cast<int>(get->integer(24));
   e.lit_sha256 = get->text(25);
+  e.verdict = {static_cast<Grade>(std::clamp<std::int64_t>(get->integer(26), 0, std::ssize(kGradeNames) - 1)),
+               get->text(27), get->text(28)};
   return e;
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/base/job_context.h"
 #include "core/base/result.h"
+#include "core/rig/scan_verdict.h"
 #include "library/catalogue/database.h"
 #include "library/catalogue/metadata.h"
 
@@ -35,6 +36,7 @@ struct Entry {
   std::string written;                ///< ISO 8601, when session.json was
   std::uint64_t bytes = 0;            ///< of its folder, when it was read
   std::vector<std::string> warnings;  ///< of its shots
+  ScanVerdict verdict;                ///< library/catalogue/session_verdict.h
 };
 
 /// {"key", "name", "folder", "fabric", "id", "tags", ... "bytes", "warnings", "error"}; amounts that nobody
@@ -49,7 +51,7 @@ struct Query {
   std::string id = {}, tag = {}, state = {}, fabric = {}, rig = {}, calibration = {};  ///< exactly
   std::string from = {}, before = {};      ///< ISO 8601, or its beginning: 2026-11
   bool unfinished = false;                 ///< only those that a scan could go on with
-  bool warned = false;                     ///< only those whose shots have warnings
+  bool warned = false;                     ///< only those whose verdict is not good
   std::filesystem::path in = {};           ///< the folder that they lie in, themselves and not below
   int limit = 100;                         ///< entries a page, 1 to 1000
   std::optional<std::int64_t> after = {};  ///< the key that ended the page before

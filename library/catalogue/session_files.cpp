@@ -7,8 +7,6 @@
 #include <charconv>
 #include <utility>
 
-#include "core/rig/exposed.h"
-
 namespace weft::library {
 namespace {
 
@@ -39,27 +37,6 @@ Result<StoredFrame> stored_frame(const Session& session, const std::string& inde
   if (!shot) return shot.error();
   if (!lies_in(session.path_of(*shot), session.folder)) return no_frame(session, shot->index);
   return StoredFrame{session.path_of(*shot), shot->sha256};
-}
-
-std::vector<std::string> warnings_of(const Shot& shot) {
-  std::vector<std::string> warnings;
-  const auto list = shot.document.find("warnings");
-  if (list == shot.document.end() || !list->is_array()) return warnings;
-  for (const Json& warning : *list) {
-    if (warning.is_string()) warnings.push_back(warning.get<std::string>());
-  }
-  return warnings;
-}
-
-std::vector<std::string> warnings_of(const Session& session) {
-  std::vector<std::string> warnings;
-  if (std::string exposure = exposure_warning(session); !exposure.empty())
-    warnings.push_back(std::move(exposure));
-  for (const Shot& shot : session.shots) {
-    if (shot.superseded_by) continue;
-    for (std::string& warning : warnings_of(shot)) warnings.push_back(std::move(warning));
-  }
-  return warnings;
 }
 
 bool lies_in(const fs::path& file, const fs::path& folder) {

@@ -24,12 +24,6 @@ Result<Shot> stored_shot(const Session& session, const std::string& index);
 /// Its file, which lies in the session. Errors as stored_shot().
 Result<StoredFrame> stored_frame(const Session& session, const std::string& index);
 
-/// What the scan warned of at this shot.
-std::vector<std::string> warnings_of(const Shot& shot);
-/// What its exposure is to be warned of (core/rig/exposed.h), then what the scan warned of at shots that
-/// count.
-std::vector<std::string> warnings_of(const Session& session);
-
 /// Whether a file is really there: a link in a session could lead out of it.
 bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder);
 

@@ -13,10 +13,9 @@
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
 #include "core/describe/field_json.h"
-#include "core/rig/exposed.h"
 #include "core/solve/solve.h"
 #include "exchange/presets/export_facts.h"
-#include "library/catalogue/session_files.h"
+#include "library/catalogue/session_verdict.h"
 #include "material/run/session_sets.h"
 #include "solve/report/solve_report.h"
 
@@ -70,14 +69,6 @@ class SolvesOnDisk {
     if (!facts || !facts->taken) return;
     link.mean_deg = facts->taken->mean_deg;
     link.solved = facts->taken->solved;
-  }
-
-  // What the current one was warned of, a preview's too.
-  std::vector<Verdict> warnings() {
-    const solve::ChoosableSolve* const current = solves_.current_one();
-    if (current == nullptr) return {};
-    const std::optional<SolveFacts>& facts = facts_of(*current);
-    return facts ? facts->warnings : std::vector<Verdict>();
   }
 
   // Why the solve is not what would be made of the session today.
@@ -183,41 +174,8 @@ std::string what_it_is(const ChainLink& link) {
   if (link.name == "photographs" && link.freshness == Freshness::kFresh) words.emplace_back("complete");
   if (link.name == "export" && !link.id.empty()) words.push_back(link.id);
   if (!link.level.empty()) words.push_back((link.name == "solve" ? "" : "of ") + link.level);
-  if (link.mean_deg && link.solved) words.push_back(solve::error_in_words(*link.mean_deg, *link.solved));
+  if (link.mean_deg && link.solved) words.push_back(error_in_words(*link.mean_deg, *link.solved));
   return fmt::format("{}", fmt::join(words, ", "));
-}
-
-// "All 10 LEDs are over; scan again" in its two parts.
-ScanVerdict parted(Grade grade, const std::string& warning) {
-  const std::size_t at = warning.find("; ");
-  return {grade, warning.substr(0, at), at == std::string::npos ? "" : warning.substr(at + 2)};
-}
-
-ScanVerdict verdict_of(const Session& session, const Chain& chain, SolvesOnDisk& solves) {
-  const ChainLink& photographs = chain.links.front();
-  if (photographs.freshness != Freshness::kFresh)
-    return {Grade::kUnfinished, photographs.why.front(), "scan it again by the same name: it goes on"};
-  if (is_exposed_wrong(session)) return parted(Grade::kAgain, exposure_warning(session));
-  const ChainLink& solve = chain.link("solve");
-  const bool is_told = solve.freshness != Freshness::kDraft && solve.mean_deg && solve.solved;
-  const std::string error = is_told ? solve::error_in_words(*solve.mean_deg, *solve.solved) : "";
-  if (solve.solved && *solve.solved < kLeastSolved)
-    return {Grade::kAgain, "most of the cloth has no normal",
-            "scan it again with the exposure that the meter takes"};
-
-  std::vector<ScanVerdict> concerns;
-  for (const std::string& warning : warnings_of(session)) concerns.push_back(parted(Grade::kUsable, warning));
-  for (const Verdict& warning : solves.warnings())
-    concerns.push_back({Grade::kUsable, warning.text, warning.remedy});
-  if (concerns.empty()) {
-    const bool is_good = !is_told || (*solve.mean_deg <= kGoodTo_deg && *solve.solved >= kGoodFrom);
-    return {is_good ? Grade::kGood : Grade::kUsable,
-            is_told ? error : "nothing is wrong with its photographs", ""};
-  }
-  ScanVerdict first = std::move(concerns.front());
-  if (is_told) first.says = error + "; " + first.says;
-  if (concerns.size() > 1) first.says += fmt::format(", and {} more", concerns.size() - 1);
-  return first;
 }
 
 bool is_all_fresh(const std::vector<ChainLink>& links) {
@@ -271,12 +229,6 @@ void describe(Fields& fields, ChainLink& link) {
   fields.value({.name = "why", .says = "It is not fresh, a sentence each", .need = kUnlessEmpty}, link.why);
 }
 
-void describe(Fields& fields, ScanVerdict& verdict) {
-  fields.choice({"grade", "What the scan is worth", {}, kMustSay}, verdict.grade, kGradeNames);
-  fields.value({"says", "Why, in a line", {}, kMustSay}, verdict.says);
-  fields.value({"action", "The one thing to do; empty: nothing", {}, kMustSay}, verdict.action);
-}
-
 void describe(Fields& fields, Chain& chain) {
   fields.value({"session", "Its folder", {}, kMustSay}, chain.session);
   fields.value({"fabric", "Of the cloth", {}, kMustSay}, chain.fabric);
@@ -313,13 +265,8 @@ Chain chain_of(const Session& session) {
   if (exports.empty()) chain.links.push_back({.name = "export", .why = {"nothing was exported"}});
   for (ChainLink& link : chain.links) link.says = what_it_is(link);
   chain.is_fresh = is_all_fresh(chain.links);
-  chain.verdict = verdict_of(session, chain, solves);
+  chain.verdict = verdict_of(session);
   return chain;
-}
-
-std::string words_of(const ScanVerdict& verdict) {
-  return fmt::format("{}: {}{}{}", kGradeNames[static_cast<std::size_t>(verdict.grade)], verdict.says,
-                     verdict.action.empty() ? "" : "; ", verdict.action);
 }
 
 std::string words_of(const ChainLink& link) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/describe/fields.h"
+#include "core/rig/scan_verdict.h"
 #include "core/rig/session.h"
 #include "solve/session/current.h"
 
@@ -35,28 +36,6 @@ struct ChainLink {
   std::string says = {};  ///< what it is: "robust, 0.28 degrees on 99 % of the cloth"
 };
 void describe(Fields& fields, ChainLink& link);
-
-enum class Grade {
-  kUnfinished,  ///< not all was photographed
-  kAgain,       ///< to be taken again: nobody can use it
-  kUsable,
-  kGood
-};
-inline constexpr std::array kGradeNames = {"unfinished", "take it again", "usable", "good"};
-
-/// What a scan is worth, in one line, and the one thing to do about it.
-struct ScanVerdict {
-  Grade grade = Grade::kGood;
-  std::string says = {};    ///< "0.77 degrees on 99 % of the cloth"
-  std::string action = {};  ///< an imperative phrase; empty: nothing is to do
-};
-void describe(Fields& fields, ScanVerdict& verdict);
-
-/// "good: 0.77 degrees on 99 % of the cloth"; "take it again: All 10 LEDs are over: ...; scan again ...".
-std::string words_of(const ScanVerdict& verdict);
-
-/// A scan is good where its solve is so close and solves so much, and nothing was warned of.
-inline constexpr double kGoodTo_deg = 2, kGoodFrom = 0.95;
 
 struct Chain {
   std::string session, fabric;  ///< its folder; the cloth

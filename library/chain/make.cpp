@@ -106,8 +106,8 @@ Result<void> Making::make_solve() {
     how.method = level->name();
     how.foretold = solve::price_of(*level);
     tell_step(fmt::format("solve it at {}: {} in {:.3g} s foretold{}", level->name(),
-                          solve::error_in_words(level->error.total_deg, level->error.solved),
-                          level->seconds.total(), is_fresh ? "" : reasons(link)));
+                          error_in_words(level->error.total_deg, level->error.solved), level->seconds.total(),
+                          is_fresh ? "" : reasons(link)));
   }
   if (options_.only_explains) return {};
   Stopwatch watch;

@@ -54,6 +54,7 @@ report::Section done_section(const BatchState& state) {
       .rows = {{"planned", std::to_string(header.sessions)},
                {"solved", std::to_string(s.solved)},
                {"solved before", std::to_string(s.there)},
+               {"good, usable, to be taken again", grades_in_words(s)},
                {"failed", std::to_string(s.failed)},
                {"missing", std::to_string(s.missing)},
                {"begun more than once", std::to_string(s.second_attempts)},
@@ -61,10 +62,10 @@ report::Section done_section(const BatchState& state) {
                {"node-hours predicted of these",
                 predicted > 0 ? fmt::format("{:.3g}, {:.2f} times what it took", predicted, s.seconds_ratio())
                               : ""},
-               {"mean error expected", solve::error_in_words(s.error.degrees(), s.error.solved())},
-               {"mean error planned", header.sampled > 0 ? solve::error_in_words(s.predicted_error.degrees(),
-                                                                                 s.predicted_error.solved())
-                                                         : "none was foretold"},
+               {"mean error expected", error_in_words(s.error.degrees(), s.error.solved())},
+               {"mean error planned",
+                header.sampled > 0 ? error_in_words(s.predicted_error.degrees(), s.predicted_error.solved())
+                                   : "none was foretold"},
                {"largest memory, MB", std::to_string(s.peak_bytes >> 20)},
                {"left out by the plan", std::to_string(header.left_out)}}};
   return section;
@@ -81,16 +82,17 @@ report::Section causes_section(const BatchState& state) {
 
 report::Section warned_section(const BatchState& state) {
   if (state.summary.warned.empty()) return {};
-  report::Section section = {.title = "Solved, with warnings"};
-  section.table = report::Table{.header = {"session", "solved", "expected", "warnings"}};
+  report::Section section = {.title = "Solved, and not all is well"};
+  section.table = report::Table{.header = {"session", "verdict", "to do", "warnings"}};
   for (const std::size_t index : state.summary.warned) {
     if (is_full(section)) break;
     const TaskOutcome& outcome = *state.rows[index].result;
-    if (outcome.solved_share() < kLeastSolved) section.table->alarms.insert(section.table->rows.size());
-    section.table->rows.push_back(
-        {name_in(outcome.session), solve::share_in_words(outcome.solved_share()),
-         outcome.expected_deg > 0 ? fmt::format("{:.3g} degrees", outcome.expected_deg) : "",
-         fmt::format("{}", fmt::join(outcome.warnings, ", "))});
+    const ScanVerdict verdict = outcome.verdict.value_or(
+        ScanVerdict{Grade::kUsable, error_in_words(outcome.expected_deg, outcome.solved_share()), ""});
+    if (verdict.grade == Grade::kAgain) section.table->alarms.insert(section.table->rows.size());
+    section.table->rows.push_back({name_in(outcome.session),
+                                   words_of(ScanVerdict{verdict.grade, verdict.says, ""}), verdict.action,
+                                   fmt::format("{}", fmt::join(outcome.warnings, ", "))});
   }
   return section;
 }
@@ -198,7 +200,7 @@ std::vector<Verdict> verdicts_of(const BatchState& state) {
     std::vector<std::string> named;
     for (const std::size_t i : s.barely_solved)
       named.push_back(fmt::format("{} ({})", name_in(state.rows[i].planned->session),
-                                  solve::share_in_words(state.rows[i].result->solved_share())));
+                                  share_in_words(state.rows[i].result->solved_share())));
     verdicts.push_back(
         {"BARELY_SOLVED",
          fmt::format("{} solved on less than half of the cloth: {}",

@@ -281,7 +281,7 @@ class Planning {
       const Forecast& forecast = forecasts_[i][closest_level];
       plan_.left_out.push_back({candidates_[i].input.folder.string(), SkipReason::kNotGoodEnough, "",
                                 fmt::format("the closest level, {}: {}", names[levels_[closest_level]],
-                                            solve::error_in_words(forecast.degrees, forecast.solved)),
+                                            error_in_words(forecast.degrees, forecast.solved)),
                                 closest->seconds});
     }
     return {};

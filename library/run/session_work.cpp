@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "library/run/session_work.h"
+#include "library/catalogue/session_verdict.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
 #include "core/solve/solve_record.h"
+#include "library/catalogue/session_verdict.h"
 #include "library/run/follow_ups.h"
 #include "library/run/lean.h"
 #include "library/run/solve_change.h"
@@ -154,6 +156,8 @@ TaskOutcome work_on_session(const SessionWork& work, const JobContext& context) 
   outcome.plan = work.header->id;
   outcome.session = work.planned.session;
   add_facts_of(*report, outcome);
+  if (const Result<Session> session = read_session(work.session))
+    outcome.verdict = verdict_with(*session, report->facts);
   const SolveOfSession solved = {work.session, work.solves / outcome.solve, *calibration};
   Result<std::vector<std::string>> made = make_follow_ups(solved, work.product, context);
   if (!made) return ended_by(work, std::move(made).error());

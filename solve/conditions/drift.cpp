@@ -79,6 +79,16 @@ class PatchFields {
   std::map<double, std::optional<LightField>> fields_;
 };
 
+// Patches that contradict the others under most lights.
+std::size_t misplaced_among(const std::vector<PatchDeparture>& departures, std::size_t lights) {
+  std::map<std::size_t, std::size_t> counts;
+  for (const PatchDeparture& each : departures) {
+    if (std::abs(each.ratio - 1) > kMisplaced) ++counts[each.patch];
+  }
+  return static_cast<std::size_t>(
+      std::ranges::count_if(counts, [&](const auto& each) { return 2 * each.second > lights; }));
+}
+
 void ask_patches(const Photographs& photographs, const std::vector<WhitePatch>& patches, Drift& drift) {
   if (patches.empty()) return;
   PatchFields fields(photographs);
@@ -108,6 +118,12 @@ void ask_patches(const Photographs& photographs, const std::vector<WhitePatch>& 
       const double ratio = seen[p][k] ? seen[p][k]->factor() / factors[k] : 1;
       if (std::abs(ratio - 1) > kMostScatter) drift.departures.push_back({p, k, ratio});
     }
+  }
+  if (const std::size_t count = misplaced_among(drift.departures, factors.size());
+      seen.size() >= 4 && 2 * count >= seen.size()) {
+    drift.misplaced = count;
+    drift.departures.clear();
+    return;
   }
   drift.source = Drift::Source::kPatches;
   drift.measured = std::move(factors);
@@ -178,6 +194,12 @@ std::vector<std::string> drift_words(const Drift& drift, const DriftEvidence& ev
         fmt::format("no white patch can be read in the light of LED {}, as they lie outside the frame, are "
                     "saturated or unlit; patches were not used",
                     leds[*drift.unread_light]));
+  }
+  if (drift.misplaced) {
+    words.push_back(
+        fmt::format("{} of {} white patches contradict the others: they are not where the calibration has "
+                    "them, and were not used; see whether the rig moved (weft rig check)",
+                    *drift.misplaced, evidence.patches.size()));
   }
   for (auto first = drift.departures.begin(); first != drift.departures.end();) {
     const auto last = std::find_if(first, drift.departures.end(),

@@ -45,6 +45,7 @@ struct Drift {
   std::vector<double> measured;             ///< brightness of each light; empty where there is no source
   std::optional<std::size_t> unread_light;  ///< in whose light no patch can be read: patches were not used
   std::vector<PatchDeparture> departures;   ///< patch by patch, where patches told
+  std::optional<std::size_t> misplaced;     ///< so many patches contradict the others: patches were not used
   /// What each repeat gave of its earlier shot, or nothing where they share no light; empty where patches
   /// told.
   std::vector<std::optional<double>> ratios;
@@ -58,6 +59,9 @@ inline constexpr double kMostDrift = 0.2;
 bool is_drift(double factor);
 /// Patches differ by no more, relative: beyond it something lies on one, or shades it.
 inline constexpr double kMostScatter = 0.01;
+/// Where half of four patches or more differ by so much under most lights, they are not where the calibration
+/// has them: camera or table moved.
+inline constexpr double kMisplaced = 0.03;
 
 /// What each photograph shows of a patch, well inside it; nothing where it cannot be read: it lies outside
 /// the frame, is unlit, or full over more than half of it. `field` is at the patch's height.

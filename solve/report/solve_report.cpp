@@ -276,15 +276,6 @@ void MapSummary::add(const MapBand& band, View<const float> normal_deg, View<con
   }
 }
 
-std::string share_in_words(double share) {
-  return share < 1 && share >= 0.995 ? "over 99 %" : percent_words(share) + " %";
-}
-
-std::string error_in_words(double mean_deg, double solved) {
-  if (!(solved > 0)) return "nothing solved";
-  return fmt::format("{:.3g} degrees on {} of the cloth", mean_deg, share_in_words(solved));
-}
-
 ExpectedError MapSummary::expected() const {
   const auto mean_deg = [](const AngleHistogram& rms) { return solver::kMeanOfRms * rms.mean(); };
   const bool is_known = std::isfinite(sum_.quantile(0.5));

@@ -48,10 +48,6 @@ struct ExpectedError {
 
   double of_whole_deg() const { return deg_of_whole(total_deg, solved); }
 };
-/// "0.77 degrees on 98 % of the cloth", or "nothing solved".
-std::string error_in_words(double mean_deg, double solved);
-/// "98 %": 100 only of all.
-std::string share_in_words(double share);
 
 /// What the report says of the maps, gathered while they are solved.
 class MapSummary {

@@ -26,8 +26,9 @@ class FullDisk : public testing::Test {
     ASSERT_TRUE(served_.client().post("/api/v1/scan",
                                       {{"session", "cloth"}, {"fabric", "satin"}, {"exposure_us", 20000}}));
     ASSERT_TRUE(comes("/api/v1/rig", [](const Json& rig) { return rig["state"] == "idle"; }));
-    ASSERT_TRUE(comes("/api/v1/jobs", [](const Json& page) {  // the preview
-      return page["jobs"].size() == 1 && page["jobs"][0]["state"] == "done";
+    ASSERT_TRUE(comes("/api/v1/jobs", [](const Json& page) {  // the look at the rig, and the preview
+      return page["jobs"].size() == 2 && page["jobs"][0]["state"] == "done" &&
+             page["jobs"][1]["state"] == "done";
     }));
   }
 
@@ -56,7 +57,7 @@ TEST_F(FullDisk, UnderJobsAndCatalogueIsSaidAndLosesNothing) {
   const Result<Json> job = solve();
   ASSERT_FALSE(job);
   EXPECT_THAT(job.error().message(), HasSubstr("No space left"));
-  EXPECT_EQ(served_.client().get("/api/v1/jobs")->at("jobs").size(), 1u) << "what is refused does not wait";
+  EXPECT_EQ(served_.client().get("/api/v1/jobs")->at("jobs").size(), 2u) << "what is refused does not wait";
   const Result<Json> tagged = tag();
   ASSERT_FALSE(tagged);
   EXPECT_THAT(tagged.error().message(), HasSubstr("No space left"));
@@ -73,11 +74,11 @@ TEST_F(FullDisk, UnderJobsAndCatalogueIsSaidAndLosesNothing) {
   EXPECT_EQ(served_.client().get("/api/v1/sessions?tag=red")->at("total"), 1);
   ASSERT_TRUE(solve()) << "the same request, once there is room";
   EXPECT_TRUE(comes("/api/v1/jobs", [](const Json& all) {
-    return all["jobs"].size() == 2 && all["jobs"][0]["state"] == "done" && all["jobs"][1]["state"] == "done";
+    return all["jobs"].size() == 3 && all["jobs"][0]["state"] == "done" && all["jobs"][1]["state"] == "done";
   }));
   served_.kill_daemon();
   ASSERT_TRUE(served_.serve());
-  EXPECT_EQ(served_.client().get("/api/v1/jobs")->at("jobs").size(), 2u) << "after a restart too";
+  EXPECT_EQ(served_.client().get("/api/v1/jobs")->at("jobs").size(), 3u) << "after a restart too";
 }
 
 }  // namespace

@@ -221,6 +221,18 @@ TEST(Drift, IsNotToldByARepeatOfACoveredLight) {
   EXPECT_EQ(photographs.field->at(2, 1, 0, 0).strength, 1);
 }
 
+TEST(Drift, IsNotAskedOfPatchesHalfOfWhichContradictTheOthers) {
+  Photographs photographs = mosaics(kShotSize, {});
+  DriftEvidence evidence = repeated(photographs, 1.1);
+  evidence.patches = four_patches();
+  for (std::size_t k = 0; k < 10; ++k) shade(photographs, k, 0.8);
+  evidence.patches[1].reflectance_rgb.fill(0.6);
+  const Drift drift = find_drift(photographs, evidence, 1);
+  EXPECT_EQ(drift.misplaced, 2U);
+  EXPECT_TRUE(drift.departures.empty());
+  EXPECT_EQ(drift.source, Drift::Source::kRepeats);
+}
+
 TEST(Drift, IsAskedOfRepeatsWhereNoPatchCanBeRead) {
   Photographs photographs = mosaics(kShotSize, {});
   DriftEvidence evidence = repeated(photographs, 1.1);

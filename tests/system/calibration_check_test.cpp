@@ -21,6 +21,7 @@
 #include "solve/input/load.h"
 #include "solve/input/session_input.h"
 #include "solve/run/solve_session.h"
+#include "tests/system/checked_rig.h"
 #include "tests/system/program.h"
 
 // A rig that is checked, moves, is found out and updated: 600 x 400 pixels over 200 mm of table.
@@ -31,93 +32,19 @@ namespace {
 namespace fs = std::filesystem;
 using simulator::Scene;
 using simulator::TargetSettings;
+using test::checked_rig;
 using testing::HasSubstr;
 
-Scene checked_rig() {
-  Scene scene;
-  scene.fabric = "grey card";
-  scene.camera.width = 600;
-  scene.camera.height = 400;
-  scene.camera.mm_per_pixel = 200.0 / 600;
-  scene.material.albedo.fill(0.2);
-  scene.effects.near_light = true;
-  for (const double y : {58.0, -58.0}) {
-    for (const double x : {-45.0, 45.0}) {
-      TargetSettings& patch = scene.targets.emplace_back();
-      patch.pattern = simulator::PaperSettings{14, 12};
-      patch.centre_mm = {x, y, 0.3};
-      patch.white = 0.88;
-    }
-  }
-  const CameraModel camera = simulator::rig_of(scene)->camera;
-  Scene bare = scene;
-  bare.targets.clear();
-  for (const TargetSettings& tag : simulator::furniture(bare, camera)) scene.targets.push_back(tag);
-  return scene;
-}
-
-/// One folder for all tests of a suite: a session, what was calibrated from it, and captures for checks.
-class CalibrationCheck : public testing::Test {
+class CalibrationCheck : public test::CheckedRig {
  protected:
   static void SetUpTestSuite() {
-    root_ = fs::path(testing::TempDir()) / ("weft_calibration_check_" + std::to_string(getpid()));
-    fs::create_directories(root_);
-    simulate(checked_rig(), "cloth.weft");
+    CheckedRig::SetUpTestSuite();
     simulator::CapturesOptions options;
     options.parts = {"start", "check"};
     const auto captures = simulator::simulate_captures(checked_rig(), root_, options);
     ASSERT_TRUE(captures) << captures.error().message();
-    calibrate();
   }
-  static void TearDownTestSuite() { fs::remove_all(root_); }
-
-  static void simulate(const Scene& scene, const char* name) {
-    simulator::SimulateOptions options;
-    options.truth = false;
-    const auto report = simulator::simulate_session(scene, root_ / name, options);
-    ASSERT_TRUE(report) << report.error().message();
-  }
-
-  /// The exact calibration with the tags that the session shows and its patches.
-  static void calibrate() {
-    const auto plan = solve::plan_session({root_ / "cloth.weft", {}, {}});
-    ASSERT_TRUE(plan) << plan.error().message();
-    const auto loaded = solve::load_photographs(*plan, {});
-    ASSERT_TRUE(loaded) << loaded.error().message();
-    const auto tags = calibration::tags_in(*loaded, {simulator::TagSettings().dictionary});
-    ASSERT_TRUE(tags) << tags.error().message();
-    ASSERT_EQ(tags->size(), 4U);
-    Calibration rig = plan->calibration;
-    for (const calibration::TagSighting& tag : *tags) {
-      Fiducial& fiducial = rig.fiducials.emplace_back(Fiducial{tag.dictionary, tag.id, {}});
-      for (std::size_t i = 0; i < 4; ++i)
-        fiducial.corners_mm[i] = point_on_plane(*rig.camera, tag.corners_px[i].x, tag.corners_px[i].y, 0.3);
-    }
-    for (const TargetSettings& target : checked_rig().targets) {
-      if (kind_of(target.pattern) != simulator::TargetKind::kPaper) continue;
-      WhitePatch& patch = rig.patches.emplace_back();
-      patch.reflectance_rgb.fill(0.88);
-      for (const auto& [x, y] : {std::pair{-6.0, 5.0}, {6.0, 5.0}, {6.0, -5.0}, {-6.0, -5.0}}) {
-        const Vec3 p = project(*rig.camera, target.centre_mm + Vec3{x, y, 0});
-        patch.polygon_px.push_back({p.x, p.y});
-      }
-    }
-    rig.camera_covariance = ParameterCovariance{{"camera_from_rig_translation_mm.z"}, {0.01}};
-    rig.subject.measured = "2026-03-01T08:00:00Z";
-    const auto written = write_calibration(root_ / "rig" / "first", rig);
-    ASSERT_TRUE(written) << written.error().message();
-  }
-
-  static Scene with_table_lower() {
-    Scene scene = checked_rig();
-    for (TargetSettings& target : scene.targets) target.centre_mm.z -= 2;
-    scene.geometry.cloth_height_mm = -2;
-    return scene;
-  }
-
-  static fs::path root_;
 };
-fs::path CalibrationCheck::root_;
 
 TEST_F(CalibrationCheck, AcceptsWhatIsRight) {
   const fs::path result = root_ / "accepted";

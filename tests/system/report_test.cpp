@@ -219,10 +219,10 @@ TEST(MapSummary, CountsTheShareOfTheClothThatHasANormal) {
   EXPECT_NEAR(maps.expected().total_deg, 180 / std::numbers::pi, 1e-12) << "no angle is known";
   EXPECT_NEAR(maps.expected().of_whole_deg(), 180 / std::numbers::pi, 1e-12);
   EXPECT_EQ(none.expected().solved, 0);
-  EXPECT_EQ(solve::error_in_words(0, 0), "nothing solved");
-  EXPECT_EQ(solve::error_in_words(0.248, 0.108), "0.248 degrees on 11 % of the cloth");
-  EXPECT_EQ(solve::share_in_words(0.9999), "over 99 %");
-  EXPECT_EQ(solve::share_in_words(1), "100 %");
+  EXPECT_EQ(error_in_words(0, 0), "nothing solved");
+  EXPECT_EQ(error_in_words(0.248, 0.108), "0.248 degrees on 11 % of the cloth");
+  EXPECT_EQ(share_in_words(0.9999), "over 99 %");
+  EXPECT_EQ(share_in_words(1), "100 %");
 }
 
 TEST(MapSummary, FindsQuantilesOfSigmaAndOfItsPartsWhereTheNormalIsKnown) {

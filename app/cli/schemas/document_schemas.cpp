@@ -5,6 +5,7 @@
 
 #include "calibration/guide/photograph_set.h"
 #include "calibration/run/last_check.h"
+#include "calibration/run/rig_look.h"
 #include "core/describe/field_json.h"
 #include "core/rig/calibration.h"
 #include "core/rig/calibration_parts.h"
@@ -42,6 +43,7 @@ const std::vector<DocumentSchema>& document_schemas() {
       {"weft.lights", "lights.json of a calibration", fields_of<LightsPart>},
       {"weft.calibration-check", "result.json: whether a rig is as it was calibrated",
        fields_of<calibration::CheckResult>},
+      {"weft.rig-look", "rig.json of a session: what it shows of its rig", fields_of<calibration::RigLook>},
       {"weft.photographs", "photographs.json: photographs under distant lights that were imported",
        fields_of<library::ImportedPhotographs>},
       {"weft.set", "set.json: photographs for a step of a calibration",

@@ -14,6 +14,7 @@
 #include "app/server/rig/framing_guide.h"
 #include "app/server/rig/once.h"
 #include "app/server/rig/rig_keeper.h"
+#include "app/server/rig/rig_watch.h"
 #include "app/server/rig/set_keeper.h"
 #include "app/server/view/pixel_tables.h"
 #include "app/server/view/view_store.h"
@@ -33,6 +34,7 @@ struct RigParts {
   Once& scans;
   SetKeeper& sets;
   FramingGuide& framing;
+  RigWatch& watch;
   Controls& controls;
   JobQueue& jobs;
   LibraryService& library;

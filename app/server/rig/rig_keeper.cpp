@@ -352,6 +352,7 @@ RigStatus RigKeeper::status_locked() const {
   status.is_dark = status.is_dark || attended.is_dark;
   status.lit = attended.lit;
   status.controls = controls_();
+  status.place = place_();
   return status;
 }
 

@@ -53,6 +53,9 @@ class RigKeeper {
 
   /// Hears who holds the controls; set before the first client comes. Must not call the keeper.
   void on_controls(std::function<std::string()> controls) { controls_ = std::move(controls); }
+  /// Says how the rig is by its last scan (RigWatch::place()); set before the first begins. Must not call the
+  /// keeper.
+  void on_place(std::function<Json()> place) { place_ = std::move(place); }
   /// Tells all that follow how things are.
   void tell_status();
 
@@ -106,6 +109,7 @@ class RigKeeper {
   std::function<void(bool)> busy_ = [](bool) {};
   std::function<void(const capture::ScanRequest&)> scanned_ = [](const capture::ScanRequest&) {};
   std::function<std::string()> controls_ = [] { return std::string(); };
+  std::function<Json()> place_ = [] { return Json(); };
   mutable std::mutex mutex_;
   std::condition_variable_any ended_;  ///< or asked to end
   bool running_ = false;

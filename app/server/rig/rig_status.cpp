@@ -112,6 +112,7 @@ Json to_json(const RigStatus& status, const capture::Rig& rig) {
           {"lit", status.lit},
           {"controls", status.controls},
           {"by", status.by},
+          {"place", status.place},
           {"devices",
            {{"board",
              {{"port", rig.board.port},

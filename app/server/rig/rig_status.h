@@ -44,10 +44,12 @@ struct RigStatus {
   std::string by;                              ///< who began the scan, or the last one; empty: not known
   std::optional<capture::CameraFacts> camera;  ///< what it said of itself during that scan
   std::vector<double> exposures_us;            ///< Attendance::Status
+  Json place;                                  ///< RigWatch::place()
 };
 
 /// {"rig", "state", "phase", "session", "led", "frames", "frames_planned", "exposure_us", "why", "error",
-/// "warnings", "leds", "left_s", "can", "dark", "lit", "controls", "by", "devices"}, as docs/http.md says.
+/// "warnings", "leds", "left_s", "can", "dark", "lit", "controls", "by", "place", "devices"}, as docs/http.md
+/// says.
 Json to_json(const RigStatus& status, const capture::Rig& rig);
 
 }  // namespace weft::app

@@ -377,13 +377,34 @@ TEST(Scan, IsMeteringAgainAfterAPauseAndAFaultOfItsTestShots) {
 TEST(Scan, GivesTheCodeOfWhatAFrameIsWarnedOf) {
   ScanBench bench;
   bench.request.exposure.exposure_us *= 8;
+  bench.request.any_exposure = true;
   ASSERT_TRUE(bench.scan());
   EXPECT_EQ(bench.kept[0].finding.code, "") << "the dark shot";
   EXPECT_EQ(bench.kept[1].finding.code, "clipped");
 }
 
+TEST(Scan, EndsAtTheFirstFrameThatCannotBeUsedAndLeavesNoSession) {
+  ScanBench bench;
+  const double metered_us = bench.request.exposure.exposure_us;
+  const std::vector<double> times_us = bench.rig.camera().shutter_times_us().value();
+  for (const auto& [times, words] :
+       {std::pair{32.0, "100 percent of a channel are full"}, {1 / 64.0, "it is dark"}}) {
+    bench.request.exposure.exposure_us = nearest_time_us(times_us, times * metered_us);
+    const Result<ScanOutcome> outcome = bench.scan();
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error().kind, ErrorKind::kUsage);
+    EXPECT_THAT(outcome.error().message(), HasSubstr(words));
+    EXPECT_THAT(outcome.error().message(), HasSubstr("LED 1"));
+    EXPECT_FALSE(std::filesystem::exists(bench.request.session));
+  }
+  bench.request.exposure.exposure_us = nearest_time_us(times_us, 32 * metered_us);
+  bench.request.bracket = 1 / 32.0;
+  EXPECT_TRUE(bench.scan()) << "the brackets hold the cloth";
+}
+
 TEST(Scan, SaysOnceOfAllFramesThatTheyAreOverOrDark) {
   ScanBench bench;
+  bench.request.any_exposure = true;
   const double metered_us = bench.request.exposure.exposure_us;
   for (const auto& [times, words] :
        {std::pair{32.0, "All 10 LEDs are over"}, {1 / 32.0, "All 10 LEDs are dark"}}) {

@@ -211,6 +211,9 @@ test('a rig that was knocked is brought back: seen, fitted, proven, accepted', a
     const spoiled = await rig.scan('madder twill');
     const visitor = await visit(browser, rig);
     const page = await visitor.open(`${rig.address}/calibrate`);
+    const place = page.locator('header .place');
+    await place.getByText(/camera moved [23]\.\d mm and turned 0\.4.* LED 3 (moved|brighter) .*, costs 0\.\d\d degrees/).waitFor({timeout: calculation_ms});
+    await page.getByRole('region', {name: 'State'}).getByText('calibrate again what moved').waitFor();
     await page.getByRole('button', {name: 'After a knock'}).click();
     await begin(page, described(rig, 'sheet'));
     await lay(rig, page, 'sheet');
@@ -247,6 +250,7 @@ test('a rig that was knocked is brought back: seen, fitted, proven, accepted', a
 
     await page.goto(`${rig.address}/calibrate`);
     await page.getByText(/passed, just now/).first().waitFor();
+    await place.getByText('in place').waitFor();
     assert.deepEqual(await page.locator('.overview td, .overview th').filter({hasText: spoiled}).count(), 1, 'the scan after the knock is listed');
     await page.getByRole('button', {name: 'Solve 2 sessions again'}).click();
     await page.getByText('2 jobs queued').waitFor();
@@ -345,6 +349,7 @@ test('a bare rig is calibrated with nothing but the page', {skip: !isSoak && 'it
     await page.getByText('The rig scans by calibrations/first-color').waitFor();
     await page.goto(`${rig.address}/calibrate`);
     await page.getByText(/passed, just now/).first().waitFor();
+    await place.getByText('in place').waitFor();
     await picture(page, 'calibrate_whole');
     await visitor.leave();
   } finally {

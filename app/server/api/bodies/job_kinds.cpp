@@ -83,6 +83,28 @@ Result<void> add_export_source(JobSpec& spec, const JobPlaces& places) {
   return {};
 }
 
+struct LookedAtScan {
+  std::filesystem::path session;
+};
+
+void describe(Fields& fields, LookedAtScan& scan) {
+  fields.value({.name = "session",
+                .says = "The scan that shows its rig",
+                .need = kMustSay,
+                .path = PathTo::kSession,
+                .said = Said::kToServer},
+               scan.session);
+}
+
+Result<void> add_scan(JobSpec& spec, const JobPlaces& places) {
+  spec.of = spec.wants["session"].get<std::string>();
+  const Result<std::filesystem::path> session = places.session(spec.of);
+  if (!session) return session.error();
+  spec.needs.push_back(session->string());
+  add(spec, {session->string()});
+  return {};
+}
+
 struct NamedMaterial {
   std::string material;
 };
@@ -229,6 +251,7 @@ const std::vector<JobKind>& job_kinds() {
        {"rig", "plan", "--picture", kPlanPicture},
        {walk<calibration::RigPlanRequest>},
        add_rig_file},
+      {kRigCheck, "Has the rig moved?", {"rig", "check"}, {walk<LookedAtScan>}, add_scan},
       {"maps", "Maps", {"maps"}, {walk<material::MapsRequest>}},
       {"maps_price", "Price of maps", {"maps", "--explain"}, {walk<material::MapsRequest>}},
       {"finish", "Finished maps", {"finish"}, {walk<material::FinishRequest>}},

@@ -26,6 +26,9 @@ struct JobKind {
 
 const std::vector<JobKind>& job_kinds();
 
+/// The kind that holds a scan against its calibration, as each is once it is finished.
+inline constexpr const char* kRigCheck = "rig_check";
+
 /// [{"kind", "title", "schema"}]: what a page draws a form of.
 Json job_forms();
 

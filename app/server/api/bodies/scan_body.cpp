@@ -94,6 +94,9 @@ void describe(Fields& fields, ScanWish& wish) {
   fields.value({.name = "fabric", .says = "Name of the cloth", .most = kLongestName, .is_sentence = true},
                wish.fabric);
   describe_exposure(fields, wish.exposure_us, {0, 1e9}, "metered for this cloth");
+  fields.value({"any_exposure",
+                "Go on though the first photograph at that exposure is half full or four stops too dark"},
+               wish.any_exposure);
   fields.value({"iso", "Of the camera; default the rig file's", {1, 1e6}}, wish.iso);
   fields.value({"f_number", "Of the camera; default the rig file's", {0.5, 128}}, wish.f_number);
   describe_shots(fields, wish);
@@ -198,6 +201,7 @@ Result<capture::ScanRequest> read_scan_body(const Json& body, int leds,
   request.pose.tilt_deg = wish->tilt_deg.value_or(request.pose.tilt_deg);
   request.pose.downhill_deg = wish->downhill_deg.value_or(request.pose.downhill_deg);
   request.exposure.exposure_us = wish->exposure_us.value_or(request.exposure.exposure_us);
+  request.any_exposure = wish->any_exposure;
   request.exposure.iso = wish->iso.value_or(request.exposure.iso);
   request.exposure.f_number = wish->f_number.value_or(request.exposure.f_number);
   if (!wish->metadata.empty()) {

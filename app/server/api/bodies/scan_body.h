@@ -36,7 +36,7 @@ struct ScanWish {
   Json metadata = Json::object();
   std::optional<double> exposure_us, iso, f_number;
   std::vector<int> leds;
-  bool repeat = true, below = true, copy = true;
+  bool repeat = true, below = true, copy = true, any_exposure = false;
   std::optional<double> bracket;
   std::vector<std::string> polariser;
   std::string accept_moved, request_id;

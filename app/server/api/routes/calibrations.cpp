@@ -81,6 +81,7 @@ Result<Reply> history_of_rig(const RigParts& parts, const Call&) {
   calibration::CalibrateHistoryOptions options;
   options.rig = parts.rig.folder();
   if (is_there(parts.rig.scan.sessions)) options.sessions = parts.rig.scan.sessions;
+  options.calibration = capture::calibration_now(parts.rig);
   const Result<calibration::CalibrationHistory> history = calibration::calibrate_history(options, {});
   if (!history) return history.error();
   Json document = calibration::document_of(history->report);
@@ -103,6 +104,8 @@ Result<Reply> accept(const RigParts& parts, const Call& call) {
   if (!wish->dry_run) {
     if (Result<void> named = calibration::name_calibration(parts.rig.file, *folder); !named)
       return std::move(named).error();
+    parts.watch.hold_against_calibration();
+    parts.keeper.tell_status();
   }
   Json document = json_of(*change);
   document["words"] = words_of(*change);

@@ -36,7 +36,7 @@ Json to_json(const Shot& shot, const std::string& name) {
           {"superseded_by", shot.superseded_by ? Json(*shot.superseded_by) : Json()},
           {"thumbnail", path + "/thumbnail?sha256=" + shot.sha256},
           {"raw", path + "/raw?sha256=" + shot.sha256},
-          {"warnings", library::warnings_of(shot)}};
+          {"warnings", warnings_of(shot)}};
 }
 
 /// The cloth relit by its current solve, else the first lit photograph: a path that names its bytes.
@@ -113,7 +113,7 @@ Result<Reply> one_session(const RigParts& parts, const Call& call) {
                      {"frames", std::move(frames)},
                      {"histograms_complete", whole},
                      {"clipping_by_led", std::move(by_led)},
-                     {"warnings", library::warnings_of(*session)}});
+                     {"warnings", warnings_of(*session)}});
 }
 
 Result<Reply> next_name(const RigParts& parts, const Call& call) {

@@ -4727,7 +4727,7 @@ export interface paths {
                     calibration?: string;
                     /** @description Taken at or after this ISO time, or its beginning */
                     from?: string;
-                    /** @description Only those whose shots have warnings */
+                    /** @description Only those whose verdict is not good */
                     warned?: boolean;
                     /** @description Taken at or before this ISO time, or within what begins so: 2026-11 is all of November */
                     to?: string;
@@ -5705,7 +5705,7 @@ export interface components {
             predicted_solved: number;
             /** @description Sessions with a normal on less than half of the cloth, at most 200 */
             barely_solved: string[];
-            /** @description Sessions that were solved with warnings, at most 200 */
+            /** @description Sessions whose verdict is not good, at most 200 */
             warned: string[];
             peak_bytes?: number;
             /** @description Of sessions without a solve, the most frequent first */
@@ -6282,6 +6282,21 @@ export interface components {
             controls: string;
             /** @description Who began the scan, or the last one; empty: not known */
             by: string;
+            /** @description How the rig stands to its calibration by the last scan that was looked at; null: none was */
+            place: {
+                /** @enum {string} */
+                state: "in place" | "dimmed" | "moved" | "unexplained" | "not seen";
+                /** @description What moved or changed, and what it costs */
+                says: string;
+                /** @description The one thing to do; empty: nothing */
+                action: string;
+                /** @description That normals are off on average, degrees */
+                cost_mean_deg: number;
+                /** @description That scan */
+                session: string;
+                /** @description When; ISO 8601 */
+                taken: string;
+            } | null;
         };
         Devices: {
             board: {
@@ -6436,6 +6451,7 @@ export interface components {
             bytes: number;
             /** @description Of its shots */
             warnings: string[];
+            verdict: components["schemas"]["ScanVerdict"];
             /** @description Path of a picture, kept for ever: the cloth relit by its current solve, else the first lit photograph; null where there is neither */
             thumbnail: string | null;
             /** @description Why it, or what is said of it, cannot be read; as Error */
@@ -6743,6 +6759,11 @@ export interface components {
             fabric?: string;
             /** @description Shutter time: 20ms, 0.5s, 1/60 or, without a unit, us; the camera's nearest is taken; default metered for this cloth */
             exposure_us?: number;
+            /**
+             * @description Go on though the first photograph at that exposure is half full or four stops too dark
+             * @default false
+             */
+            any_exposure?: boolean;
             /** @description Of the camera; default the rig file's */
             iso?: number;
             /** @description Of the camera; default the rig file's */
@@ -7065,6 +7086,18 @@ export interface components {
              */
             kind: "rig_plan";
         });
+        /** Has the rig moved? */
+        RigCheckJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "rig_check";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description The scan that shows its rig: its name */
+            session: string;
+        };
         /** Maps */
         MapsJob: {
             /** @enum {string} */
@@ -7713,7 +7746,7 @@ export interface components {
             /** @description That a session may hold, else it is lost alone: 1500M, 2G */
             memory_mb?: number;
         };
-        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
+        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["RigCheckJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
     };
     responses: {
         /** @description Not a request that can be read */

@@ -13,7 +13,7 @@ import {Complaint} from '../ui/complaint';
 import {Dialog} from '../ui/dialog';
 import {Mark} from '../ui/mark';
 import {Share} from '../ui/share';
-import {silenceInWords, stateInWords, verdictOf} from './rig_words';
+import {silenceInWords, stateInWords, verdictOf, verdictOfPlace} from './rig_words';
 
 const tabs = [
   {screen: 'desk', says: 'Desk'},
@@ -64,6 +64,11 @@ function RigState() {
     <div class="rig" role="status">
       <span class="name">{status.rig}</span>
       <Mark verdict={verdictOf(status)}>{stateInWords(status)}</Mark>
+      {status.place && (
+        <a class="place" href="/calibrate" title={status.place.says}>
+          <Mark verdict={verdictOfPlace(status.place)}>{status.place.says}</Mark>
+        </a>
+      )}
       {status.controls && <Controls holder={status.controls} />}
       {isScanning && <Share label="Scan" share={status.frames / status.frames_planned} left_s={status.left_s} />}
     </div>

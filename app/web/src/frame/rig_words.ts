@@ -49,3 +49,12 @@ export function verdictOf(status: Status): Verdict {
   if (status.state === 'paused' || status.phase === 'recovering') return 'warning';
   return status.state === 'idle' || status.state === 'attended' ? 'fine' : 'busy';
 }
+
+const verdictsOfPlace: Record<NonNullable<Status['place']>['state'], Verdict> = {
+  'in place': 'fine', dimmed: 'warning', moved: 'fault', unexplained: 'fault', 'not seen': 'waiting',
+};
+
+/** How the rig stands to its calibration, by its last scan. */
+export function verdictOfPlace(place: NonNullable<Status['place']>): Verdict {
+  return verdictsOfPlace[place.state];
+}

@@ -19,7 +19,7 @@ interface AffectedSessionsProps {
 }
 
 export function AffectedSessions({sessions, calibration}: AffectedSessionsProps) {
-  const [chosen, choose] = useState<ReadonlySet<string>>(new Set(sessions.map((each) => each.session)));
+  const [chosen, choose] = useState<ReadonlySet<string>>(new Set(sessions.filter((each) => each.isConcerned).map((each) => each.session)));
   const [queued, setQueued] = useState(0);
   const [complaint, complain] = useState<ApiError | null>(null);
   const turn = (name: string) => {
@@ -39,7 +39,7 @@ export function AffectedSessions({sessions, calibration}: AffectedSessionsProps)
   return (
     <section class="panel" aria-labelledby="affected-title">
       <h2 id="affected-title">Sessions that a move may have spoiled</h2>
-      <Table caption="Affected sessions" heads={['Session', 'Taken', 'After the move', 'Mean error', 'At worst']}
+      <Table caption="Affected sessions" heads={['Session', 'Taken', 'It shows', 'Mean error']}
         rows={sessions.map((each) => ({
           key: each.session,
           cells: [
@@ -48,9 +48,8 @@ export function AffectedSessions({sessions, calibration}: AffectedSessionsProps)
               <a href={`/sessions/${each.session}`}><ClothName session={each.session} /></a>
             </label>,
             timeOf(each.time),
-            each.afterMove ? 'yes' : 'perhaps',
+            each.says || 'nothing; by its date perhaps',
             each.mean_deg === null ? 'not known' : degrees(each.mean_deg),
-            each.worst_deg === null ? 'not known' : degrees(each.worst_deg),
           ],
         }))} />
       <div class="row">

@@ -8,6 +8,8 @@ export interface CalibrationHistory {
   calibrations: DatedCalibration[];
   checks: CheckResult[];
   affected: Affected[];
+  /** What scanning on would have cost, by scan. */
+  costs: Dated[];
   warnings: string[];
 }
 
@@ -16,7 +18,6 @@ export interface DatedCalibration {
   folder: string;
   leds: Led[];
   cameraHeight_mm: number | null;
-  cameraTilt_deg: number | null;
 }
 
 export interface Led {
@@ -30,12 +31,14 @@ export interface Led {
 export interface Affected {
   session: string;
   time: string;
-  afterMove: boolean;
+  /** What it shows itself; empty: nobody looked. */
+  says: string;
+  /** The calibration of now explains it better. */
+  isConcerned: boolean;
   mean_deg: number | null;
-  worst_deg: number | null;
 }
 
-export const noHistory: CalibrationHistory = {summary: '', calibrations: [], checks: [], affected: [], warnings: []};
+export const noHistory: CalibrationHistory = {summary: '', calibrations: [], checks: [], affected: [], costs: [], warnings: []};
 
 export function historyOf(document: unknown): CalibrationHistory {
   const numbers = fieldsOf(document)['numbers'];
@@ -44,6 +47,7 @@ export function historyOf(document: unknown): CalibrationHistory {
     calibrations: listIn(numbers, 'calibrations').map(calibrationOf),
     checks: listIn(numbers, 'checks').map(checkOf),
     affected: listIn(numbers, 'affected').map(affectedOf),
+    costs: listIn(numbers, 'looks').flatMap((look) => datedOf(textIn(look, 'taken'), numberIn(look, 'cost_mean_deg'))),
     warnings: textsIn(document, 'warnings'),
   };
 }
@@ -54,7 +58,6 @@ function calibrationOf(document: unknown): DatedCalibration {
     folder: textIn(document, 'folder'),
     leds: listIn(document, 'leds').map(ledOf),
     cameraHeight_mm: numberIn(document, 'camera_height_mm'),
-    cameraTilt_deg: numberIn(document, 'camera_tilt_deg'),
   };
 }
 
@@ -78,9 +81,9 @@ function affectedOf(document: unknown): Affected {
   return {
     session: folder.slice(folder.lastIndexOf('/') + 1).replace(/\.weft$/, ''),
     time: textIn(document, 'time'),
-    afterMove: fieldsOf(document)['after_move'] === true,
+    says: textIn(document, 'says'),
+    isConcerned: fieldsOf(document)['concerned'] === true,
     mean_deg: numberIn(document, 'predicted_mean_deg'),
-    worst_deg: numberIn(document, 'predicted_worst_deg'),
   };
 }
 
@@ -94,8 +97,8 @@ export interface Series {
   points: Dated[];
 }
 
-export function seriesOfCamera(history: CalibrationHistory, measured: 'cameraHeight_mm' | 'cameraTilt_deg'): Series[] {
-  return [{name: '', points: pointsOf(history.calibrations, (each) => each[measured])}];
+export function seriesOfCamera(history: CalibrationHistory): Series[] {
+  return [{name: '', points: pointsOf(history.calibrations, (each) => each.cameraHeight_mm)}];
 }
 
 /** By LED, how far it is from where it was first. */
@@ -120,11 +123,12 @@ function seriesOfLeds({calibrations}: CalibrationHistory, valueOf: (led: Led, fi
 }
 
 function pointsOf(calibrations: readonly DatedCalibration[], valueOf: (each: DatedCalibration) => number | null): Dated[] {
-  return calibrations.flatMap((each) => {
-    const value = valueOf(each);
-    const time_ms = Date.parse(each.measured);
-    return value === null || Number.isNaN(time_ms) ? [] : [{time_ms, value}];
-  });
+  return calibrations.flatMap((each) => datedOf(each.measured, valueOf(each)));
+}
+
+function datedOf(time: string, value: number | null): Dated[] {
+  const time_ms = Date.parse(time);
+  return value === null || Number.isNaN(time_ms) ? [] : [{time_ms, value}];
 }
 
 export interface Label {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well the rig is known: each part, the last check, what is missing, and what was measured over time.
 import {useState} from 'preact/hooks';
+import {verdictOfPlace} from '../../frame/rig_words';
 import {go} from '../../state/address';
+import {rig} from '../../state/rig';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Dialog} from '../../ui/dialog';
@@ -42,6 +44,7 @@ export function Overview() {
 }
 
 function State({rigs}: {rigs: Listed | null}) {
+  const place = rig.value?.place;
   return (
     <section class="panel" aria-label="State">
       <ul class="parts">
@@ -55,6 +58,12 @@ function State({rigs}: {rigs: Listed | null}) {
         ))}
         <li><strong>Last check</strong><LastCheck rigs={rigs} /></li>
       </ul>
+      {place && (
+        <p>
+          <Mark verdict={verdictOfPlace(place)}>{place.says}</Mark> <span class="dim">{place.action}</span>{' '}
+          <a href={`/sessions/${place.session}`}>by the scan of {timeOf(place.taken)}</a>
+        </p>
+      )}
       {findings.value.filter((finding) => finding.verdict !== 'fine').map((finding) => (
         <p key={finding.says}><Mark verdict={finding.verdict}>{finding.says}</Mark> <span class="dim">{finding.remedy}</span></p>
       ))}
@@ -90,7 +99,7 @@ function Walks({isKnownRig}: {isKnownRig: boolean}) {
 }
 
 function History() {
-  const {summary, checks, warnings} = history.value;
+  const {summary, checks, costs, warnings} = history.value;
   if (summary === '') return null;
   return (
     <section class="panel" aria-labelledby="history-title">
@@ -99,8 +108,8 @@ function History() {
       <div class="plots">
         <DatedPlot title="Each LED from where it was first" unit="mm" leastSpan={1} series={seriesOfPlaces(history.value)} checks={checks} />
         <DatedPlot title="Light of each LED, of its first" unit="%" leastSpan={2} series={seriesOfFluxes(history.value)} checks={checks} />
-        <DatedPlot title="Height of the camera" unit="mm" leastSpan={1} series={seriesOfCamera(history.value, 'cameraHeight_mm')} checks={checks} />
-        <DatedPlot title="Tilt of the camera" unit="degrees" leastSpan={0.1} series={seriesOfCamera(history.value, 'cameraTilt_deg')} checks={checks} />
+        <DatedPlot title="Height of the camera" unit="mm" leastSpan={1} series={seriesOfCamera(history.value)} checks={checks} />
+        <DatedPlot title="What a move cost each scan" unit="degrees" leastSpan={0.1} series={[{name: '', points: costs}]} checks={checks} />
       </div>
       {checks.length > 0 && (
         <Table caption="Checks" heads={['Check', 'When', 'Result']}

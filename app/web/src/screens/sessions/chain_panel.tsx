@@ -13,12 +13,11 @@ import {timeOf} from '../../ui/words';
 import {jobs, queueJob, useJobs} from '../jobs/jobs';
 import {hasEnded} from '../jobs/queue';
 import {JobLine} from '../material/job_line';
+import {GradeMark} from './grade_mark';
 
 type Link = Schemas['ChainLink'];
 
 const verdicts: Record<Link['freshness'], Verdict> = {fresh: 'fine', draft: 'warning', stale: 'warning', missing: 'waiting'};
-
-const grades: Record<Schemas['ScanVerdict']['grade'], Verdict> = {good: 'fine', usable: 'warning', 'take it again': 'fault', unfinished: 'waiting'};
 
 /** Exports are made again where there are some; a preset adds one. */
 const asBefore = '';
@@ -49,7 +48,7 @@ export function ChainPanel({session: of}: {session: Schemas['Session']}) {
       <h2 id="chain-title">From photographs to files</h2>
       {chain && (
         <p>
-          <Mark verdict={grades[chain.verdict.grade]}>{chain.verdict.grade}</Mark> {chain.verdict.says}. <strong>{chain.verdict.action}</strong>
+          <GradeMark verdict={chain.verdict} /> {chain.verdict.says}. <strong>{chain.verdict.action}</strong>
         </p>
       )}
       {of.warnings.length > 0 && (

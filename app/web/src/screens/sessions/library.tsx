@@ -106,7 +106,7 @@ function FilterBar({filters, onChange}: FilterBarProps) {
       <Field label="Calibration" value={filters.calibration} onInput={put('calibration')} placeholder="id" />
       <label class="check">
         <input type="checkbox" checked={filters.warned} onChange={(event) => put('warned')(event.currentTarget.checked)} />
-        With warnings
+        Not good
       </label>
       <Button kind="quiet" isDisabled={!isNarrowed(filters)} onClick={() => onChange(noFilters)}>Clear</Button>
     </div>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is said of a cloth. A change is one step, which can be undone; nobody's change is written over.
-import {useEffect, useState} from 'preact/hooks';
+import {useState} from 'preact/hooks';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
@@ -9,6 +9,7 @@ import {change} from './edits';
 import {changeBetween, fields, formOf, problemWith, tagsIn, withTags, withoutTag, type Said} from './metadata';
 import {tags} from './shelf';
 
+/** Keyed by name and revision: another one begins with what is said then. */
 interface MetadataFormProps {
   name: string;
   said: Said;
@@ -19,7 +20,6 @@ export function MetadataForm({name, said, onChanged}: MetadataFormProps) {
   const before = formOf(said);
   const [form, setForm] = useState(before);
   const [typed, type] = useState('');
-  useEffect(() => setForm(formOf(said)), [name, said.revision]);
 
   const wanted = {...form, tags: withTags(form.tags, tagsIn(typed))};
   const changes = changeBetween(before, wanted);

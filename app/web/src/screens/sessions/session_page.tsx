@@ -14,7 +14,6 @@ import {Frames} from './frames';
 import {LastWord} from './last_word';
 import {MetadataForm} from './metadata_form';
 import {askSession, type OneSession} from './one_session';
-import {SessionState} from './session_state';
 import {askTags, shelf} from './shelf';
 import {Solves} from './solves';
 
@@ -61,7 +60,7 @@ export function SessionPage({name}: {name: string}) {
               <Frames session={one.session} onChanged={look} />
             </section>
           </div>
-          {one.said && <MetadataForm name={name} said={one.said} onChanged={look} />}
+          {one.said && <MetadataForm key={`${name} ${one.said.revision}`} name={name} said={one.said} onChanged={look} />}
         </div>
       )}
     </div>
@@ -71,7 +70,6 @@ export function SessionPage({name}: {name: string}) {
 function Facts({one: {session}}: {one: OneSession}) {
   return (
     <div class="row facts">
-      <SessionState state={session.state} />
       <span class="dim">{session.name}</span>
       {session.frames[0] && <span class="dim numbers">{timeOf(session.frames[0].time)}</span>}
       <span class="dim">cloth {session.cloth_height_mm} mm high</span>

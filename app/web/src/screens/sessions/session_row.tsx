@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import {counted} from '../../ui/say';
 import {textIn} from '../../ui/fields';
-import {Mark} from '../../ui/mark';
 import {bytesOf, timeOf} from '../../ui/words';
 import type {Summary} from './metadata';
-import {SessionState} from './session_state';
+import {GradeMark} from './grade_mark';
 
 /** The cloth relit, or photographed; an empty place where there is neither. */
 function Thumbnail({session: {thumbnail}}: {session: Summary}) {
@@ -18,7 +17,7 @@ interface SessionRowProps {
 }
 
 export function SessionRow({session, isChosen, onChoose}: SessionRowProps) {
-  const {name, fabric, tags, taken, warnings} = session;
+  const {name, fabric, tags, taken} = session;
   return (
     <div class={isChosen ? 'session chosen' : 'session'}>
       <label class="choose">
@@ -36,8 +35,7 @@ export function SessionRow({session, isChosen, onChoose}: SessionRowProps) {
       ) : (
         <>
           <span class="state">
-            <SessionState state={session.state} />
-            {warnings.length > 0 && <Mark verdict="warning">{counted(warnings.length, 'warning')}</Mark>}
+            <GradeMark verdict={session.verdict} />
           </span>
           <span class="numbers dim">{session.solves > 0 ? counted(session.solves, 'solve') : 'not solved'}</span>
           <span class="numbers dim">{taken && timeOf(taken)}</span>
