@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* kLock = "lock";
 // What a rig makes and takes away again.
 constexpr const char* kProfile = "camera.toml";
-constexpr std::array kMade = {"rig.toml", kProfile, "calibration", "environment", "home",   "things",
+constexpr std::array kMade = {"rig.toml", kProfile, "calibration", "environment", "home",   "targets",
                               "board",    "modem",  "control",     "camera.sock", kFullDisk};
 
 constexpr const char* kD80 = R"toml(# A Nikon D80 that takes its pictures to its card.
@@ -191,15 +191,15 @@ Result<void> RigFolder::write(const LightFrames& frames, const simulator::BareRi
 
 /// `is_bare`: nobody has measured by what law the paper reflects.
 Result<void> RigFolder::write_things(const simulator::BareRig& rig, bool is_bare) const {
-  const fs::path things = path_ / "things";
-  if (Result<void> ok = make_writable_folder(things); !ok) return ok;
+  const fs::path targets = path_ / "targets";
+  if (Result<void> ok = make_writable_folder(targets); !ok) return ok;
   std::string sheet = rig.sheet_toml();
   if (!is_bare) sheet.insert(0, fmt::format("delta = {}\n", rig.paper().sheet.non_lambertian));
   std::vector<std::pair<const char*, std::string>> files = {
       {"board.toml", rig.board_toml()}, {"sheet.toml", sheet}, {"scale.toml", rig.scale_toml()}};
   if (rig.has_chart()) files.emplace_back("chart.toml", rig.chart_toml());
   for (const auto& [name, text] : files) {
-    if (Result<void> ok = write_file(things / name, text); !ok) return ok;
+    if (Result<void> ok = write_file(targets / name, text); !ok) return ok;
   }
   return {};
 }

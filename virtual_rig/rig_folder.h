@@ -37,7 +37,7 @@ class RigFolder {
   ~RigFolder();
 
   const std::filesystem::path& path() const { return path_; }
-  /// rig.toml, calibration/, environment, home/, things/ and, where none is built in, the camera's profile.
+  /// rig.toml, calibration/, environment, home/, targets/ and, where none is built in, the camera's profile.
   Result<void> write(const LightFrames& frames, const simulator::BareRig& rig, const RigFiles& files) const;
 
  private:

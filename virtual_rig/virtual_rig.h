@@ -45,7 +45,7 @@ struct VirtualRigOptions {
 /// A rig on a table that is not there: board, camera, and the light between them. In its folder:
 ///   rig.toml       what a host is given (capture/rig.h), its calibration beside it
 ///   calibration/   the exact one, but of a bare rig
-///   things/        what is written about what can lie on its table: board.toml, sheet.toml ...
+///   targets/       what is written about what can lie on its table: board.toml, sheet.toml ...
 ///   environment    NAME=value lines that a host needs to meet the rig
 ///   board, modem   the board's terminal and its modem lines
 ///   camera.sock    the camera on USB

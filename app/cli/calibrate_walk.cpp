@@ -201,9 +201,11 @@ class Walk {
       if (needs_none || is_there(set_of(stage)) || !stage.description.empty()) continue;
       if (!calibration::newest_description(folder_ / "sets", *calibration::set_part_of(part)).empty())
         continue;
-      return Error{ErrorKind::kUsage, fmt::format("nobody said what the {} is", stage.thing),
-                   fmt::format("--{}", stage.thing), "its size and pattern must be known to find it",
-                   fmt::format("write a {}.toml (docs/calibration.md) and name it", stage.thing)};
+      return Error{
+          ErrorKind::kUsage, fmt::format("nobody said what the {} is", stage.thing),
+          fmt::format("--{}", stage.thing), "its size and pattern must be known to find it",
+          fmt::format("print one: weft target {0}; or write a {0}.toml (docs/calibration.md) and name it",
+                      stage.thing)};
     }
     return {};
   }

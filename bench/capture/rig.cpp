@@ -439,11 +439,11 @@ class RigMinutes {
   }
 
   Result<void> walk(const std::vector<std::string>& more) const {
-    const fs::path things = rig_->folder() / "things";
+    const fs::path targets = rig_->folder() / "targets";
     std::vector<std::string> arguments = {"calibrate", "all",
                                           "--name",    "minutes",
-                                          "--board",   (things / "board.toml").string(),
-                                          "--sheet",   (things / "sheet.toml").string(),
+                                          "--board",   (targets / "board.toml").string(),
+                                          "--sheet",   (targets / "sheet.toml").string(),
                                           "--once"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return weft(arguments);

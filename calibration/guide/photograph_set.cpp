@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "calibration/guide/printed_target.h"
 #include "calibration/run/sheet_files.h"
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
@@ -60,7 +61,8 @@ Result<std::string> described(const SetRequest& request) {
   if (!text.empty() || request.part == SetPart::kChart) return text;
   return Error{ErrorKind::kUsage, fmt::format("nobody said what the {} is", fs::path(name).stem().string()),
                name, "its size and pattern must be known to find it",
-               fmt::format("write a {} (docs/calibration.md) and name it", name)};
+               fmt::format("print one: weft target {}; or write a {} (docs/calibration.md) and name it",
+                           fs::path(name).stem().string(), name)};
 }
 
 Error not_this_set(const SetRequest& request, const std::string& why) {
@@ -108,14 +110,16 @@ void describe(Fields& fields, PhotographSet& s) {
 
 std::string newest_description(const fs::path& sets, SetPart part) {
   const char* name = description_of(part);
+  if (name == nullptr) return "";
   fs::path newest;
   std::error_code ignored;
-  for (const auto& set : fs::directory_iterator(sets, ignored)) {
-    const fs::path each = name == nullptr ? fs::path() : set.path() / name;
+  const auto look_at = [&](const fs::path& each) {
     const bool is_newer =
         newest.empty() || fs::last_write_time(each, ignored) > fs::last_write_time(newest, ignored);
     if (is_there(each) && is_newer) newest = each;
-  }
+  };
+  look_at(sets.parent_path() / kTargetsFolder / name);
+  for (const auto& set : fs::directory_iterator(sets, ignored)) look_at(set.path() / name);
   const Result<std::string> text = newest.empty() ? Result<std::string>("") : read_text(newest);
   return text ? *text : "";
 }

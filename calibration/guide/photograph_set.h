@@ -58,7 +58,8 @@ struct SetRequest {
   std::string description;
 };
 
-/// What the newest set in a folder says of such a thing; empty: none does.
+/// What the newest of the sets in a folder, and of the rig's own targets beside it (printed_target.h), says
+/// of such a thing; empty: none does.
 std::string newest_description(const std::filesystem::path& sets, SetPart part);
 
 /// Begins a set, or takes up the one that is in the folder. kCannotCreate where the folder holds another part

@@ -32,10 +32,10 @@ class CaptureAtTheRig : public testing::Test {
 
   Json begin(const std::string& part, const char* description) {
     Json body = {{"part", part}};
-    if (description != nullptr) body["description"] = read_text(things() / description).value();
+    if (description != nullptr) body["description"] = read_text(targets() / description).value();
     return answer(served_.client().post(kWork, body));
   }
-  fs::path things() const { return served_.rig().folder() / "things"; }
+  fs::path targets() const { return served_.rig().folder() / "targets"; }
 
   static Json answer(const Result<Json>& document) {
     EXPECT_TRUE(document) << document.error().message();

@@ -72,7 +72,7 @@ TEST(RigFolder, OfABareRigHasATapesLedsAndWhatIsWrittenAboutThings) {
     EXPECT_NEAR(length(off), 10, 1e-9) << "LED " << k + 1;
   }
   for (const char* name : {"board.toml", "sheet.toml", "scale.toml"})
-    EXPECT_TRUE(is_there(folder / "things" / name)) << name;
+    EXPECT_TRUE(is_there(folder / "targets" / name)) << name;
 }
 
 TEST(RigFolder, BelongsToOneRigAtATime) {

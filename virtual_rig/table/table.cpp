@@ -107,13 +107,13 @@ const std::vector<Thing>& things() {
   };
   static const std::vector<Thing> kThings = {
       {"board", and_more({kColumns, kRows, kMirrored}), board,
-       "the ChArUco board of things/board.toml, or one of so many columns= and rows=, mirrored=1: from "
+       "the ChArUco board of targets/board.toml, or one of so many columns= and rows=, mirrored=1: from "
        "behind"},
       {"sheet", and_more({kReflectance, kOther, kFold}), sheet,
-       "the white sheet of things/sheet.toml, other=1: another one alike, or of another reflectance=; "
+       "the white sheet of targets/sheet.toml, other=1: another one alike, or of another reflectance=; "
        "fold=: a crease of so many degrees in its middle, where it lies flat"},
-      {"scale", anyhow, scale, "the grey scale of things/scale.toml"},
-      {"chart", anyhow, chart, "the colour chart of things/chart.toml, where the scene has spectra"},
+      {"scale", anyhow, scale, "the grey scale of targets/scale.toml"},
+      {"chart", anyhow, chart, "the colour chart of targets/chart.toml, where the scene has spectra"},
       {"trap", {}, trap, "a sheet with a black trap in its middle"},
       {"ruler", anyhow, ruler,
        fmt::format("{} squares of {:g} mm in two rows", kRulerSquares, kRulerSquare_mm)},

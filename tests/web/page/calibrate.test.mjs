@@ -18,7 +18,7 @@ before(async () => { browser = await launch(); });
 after(async () => { await browser?.close(); });
 
 function described(rig, thing) {
-  return path.join(rig.folder, 'things', `${thing}.toml`);
+  return path.join(rig.folder, 'targets', `${thing}.toml`);
 }
 
 /** The fields of a board as a person types them. */
@@ -137,6 +137,26 @@ test('photographs of a board are answered, counted and left out, and the set out
   }
 });
 
+test('a target is printed from the page, and the rig knows it from then on', async () => {
+  const rig = await startRig({options: ['--bare']});
+  try {
+    const visitor = await visit(browser, rig);
+    const page = await visitor.open(`${rig.address}/calibrate/all/first`);
+    await page.getByRole('button', {name: 'Print a board'}).click();
+    const link = page.getByRole('link', {name: /a ChArUco board of 10 x 7 squares/});
+    assert.match(await link.getAttribute('href'), /calibrations\/targets\/board$/);
+    assert.deepEqual(await violations(page), []);
+    const pdf = fs.readFileSync(path.join(rig.folder, 'targets', 'board.pdf'), 'latin1');
+    assert.match(pdf, /^%PDF-1\.4/);
+    assert.match(fs.readFileSync(described(rig, 'board'), 'utf8'), /kind = "charuco"/);
+    await begin(page);
+    assert.match(await page.locator('.says').innerText(), /lay the board flat/i);
+    await visitor.leave();
+  } finally {
+    await rig.stop();
+  }
+});
+
 test('after each sheet the page says what the lights would be so far', async (t) => {
   const rig = await startRig();
   try {
@@ -215,7 +235,8 @@ test('a rig that was knocked is brought back: seen, fitted, proven, accepted', a
     await place.getByText(/camera moved [23]\.\d mm and turned 0\.4.* LED 3 (moved|brighter) .*, costs 0\.\d\d degrees/).waitFor({timeout: calculation_ms});
     await page.getByRole('region', {name: 'State'}).getByText('calibrate again what moved').waitFor();
     await page.getByRole('button', {name: 'After a knock'}).click();
-    await begin(page, described(rig, 'sheet'));
+    // The rig knows its sheet: nothing is typed and no file is chosen.
+    await begin(page);
     await lay(rig, page, 'sheet');
     await lay(rig, page, 'sheet tilt=20 azimuth=0');
     await lay(rig, page, 'sheet tilt=20 azimuth=90');

@@ -115,7 +115,8 @@ Json request_schemas() {
           {"ControlRequest", schema_of_request<ControlRequest>()},
           {"SetWorkRequest", schema_of_request<SetWorkRequest>()},
           {"LeaveOutRequest", schema_of_request<LeaveOutRequest>()},
-          {"AcceptRequest", schema_of_request<AcceptRequest>()}};
+          {"AcceptRequest", schema_of_request<AcceptRequest>()},
+          {"TargetRequest", schema_of_request<calibration::TargetRequest>()}};
 }
 
 }  // namespace weft::app

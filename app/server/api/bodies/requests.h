@@ -7,6 +7,7 @@
 
 #include "app/server/api/bodies/body_fields.h"
 #include "calibration/guide/photograph_set.h"
+#include "calibration/guide/printed_target.h"
 #include "core/base/json_document.h"
 #include "core/describe/fields.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include "app/server/api/bodies/job_places.h"
 #include "app/server/api/bodies/requests.h"
 #include "app/server/api/bodies/scan_body.h"
+#include "calibration/guide/printed_target.h"
 #include "calibration/guide/response_series.h"
 #include "calibration/run/accept.h"
 #include "calibration/run/history.h"
@@ -113,6 +115,30 @@ Result<Reply> accept(const RigParts& parts, const Call& call) {
   return json_reply(document);
 }
 
+Result<Reply> print_target(const RigParts& parts, const Call& call) {
+  const Result<Json> body = command_in(parts, call);
+  if (!body) return body.error();
+  const Result<calibration::TargetRequest> wish = read_body<calibration::TargetRequest>(
+      *body, {"nothing can be printed so", "a target", "POST calibrations/targets"});
+  if (!wish) return wish.error();
+  const Result<calibration::PrintedTarget> target = calibration::print_for_rig(*wish, parts.rig);
+  if (!target) return target.error();
+  return json_reply({{"target", target->name},
+                     {"says", target->says},
+                     {"remedy", target->remedy},
+                     {"pdf", "/api/v1/calibrations/targets/" + target->name}});
+}
+
+Result<Reply> printed_target(const RigParts& parts, const Call& call) {
+  const std::string& name = call.segments.at(0);
+  const bool is_known = std::ranges::find(calibration::kTargetNames, name) != calibration::kTargetNames.end();
+  Result<std::string> pdf = is_known ? read_text(calibration::pdf_of_target(parts.rig, name))
+                                     : Error{ErrorKind::kNoInput, "there is no such target", name, "",
+                                             "print a board, a sheet or tags"};
+  if (!pdf) return std::move(pdf).error();
+  return Reply{200, "application/pdf", std::move(*pdf)};
+}
+
 }  // namespace
 
 Resource calibrations_resource(const RigParts& parts) {
@@ -124,6 +150,8 @@ Resource calibrations_resource(const RigParts& parts) {
       {call("GET", "/api/v1/calibrations", list_of_calibrations, Pool::kDisk),
        call("GET", "/api/v1/calibrations/history", history_of_rig, Pool::kDisk),
        call("POST", "/api/v1/calibrations/accept", accept, Pool::kDisk),
+       call("POST", "/api/v1/calibrations/targets", print_target, Pool::kDisk),
+       call("GET", "/api/v1/calibrations/targets/{target}", printed_target, Pool::kDisk),
        call("POST", "/api/v1/calibrations/work", begin_or_go_on, Pool::kDevices),
        call(
            "GET", "/api/v1/calibrations/work",

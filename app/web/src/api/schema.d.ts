@@ -525,6 +525,103 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/calibrations/targets": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Draw a target that fits what the camera sees, to print; the rig knows it from then on */
+        post: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path?: never;
+                cookie?: never;
+            };
+            requestBody: {
+                content: {
+                    "application/json": components["schemas"]["TargetRequest"];
+                };
+            };
+            responses: {
+                /** @description Drawn */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["PrintedTarget"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                409: components["responses"]["Busy"];
+                421: components["responses"]["ForeignHost"];
+                /** @description It cannot be written */
+                500: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/calibrations/targets/{target}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The page to print, at its true size */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    target: "board" | "sheet" | "tags";
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description A PDF */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/pdf": string;
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                421: components["responses"]["ForeignHost"];
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/calibrations/work": {
         parameters: {
             query?: never;
@@ -5780,6 +5877,16 @@ export interface components {
                 why: string;
             }[];
         };
+        PrintedTarget: {
+            /** @enum {string} */
+            target: "board" | "sheet" | "tags";
+            /** @description What it is */
+            says: string;
+            /** @description What to do with it */
+            remedy: string;
+            /** @description Where its page is */
+            pdf: string;
+        };
         PhotographSet: {
             /** @description Of its folder */
             name: string;
@@ -6874,6 +6981,23 @@ export interface components {
              * @default false
              */
             dry_run?: boolean;
+        };
+        TargetRequest: {
+            /**
+             * @description What to print: board of the lens, sheet of the lights, tags of the table
+             * @enum {string}
+             */
+            target: "board" | "sheet" | "tags";
+            /**
+             * @description To print on, landscape
+             * @default a4
+             * @enum {string}
+             */
+            paper?: "a4" | "a3" | "letter";
+            /** @description What the camera sees of the table, mm; default by the rig's calibration, else 200 */
+            field_width_mm?: number;
+            /** @description The same; default by the rig's calibration, else 133 */
+            field_height_mm?: number;
         };
         /** Solve */
         SolveJob: {

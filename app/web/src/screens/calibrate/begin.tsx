@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The begin of a set of photographs: what is laid on the table, and a button. The set keeps it, so it is said once.
 import {useState} from 'preact/hooks';
+import {answer, api, type Schemas} from '../../api/client';
 import {forms} from '../../state/forms';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
@@ -50,9 +51,16 @@ function Description({thing, said, onSaid}: DescriptionProps) {
   const take = async (file: File | undefined) => {
     if (file) onSaid({wish: {}, text: await file.text()});
   };
+  const [printed, setPrinted] = useState<Schemas['PrintedTarget'] | null>(null);
+  const print = useAction(async () => {
+    setPrinted(await answer(api.POST('/api/v1/calibrations/targets', {body: {target: thing as 'board'}})));
+  });
   return (
     <fieldset class="description">
-      <legend>What the {thing} is. Where the rig knows it already, leave this empty.</legend>
+      <legend>What the {thing} is. Where the rig knows it already, or printed it, leave this empty.</legend>
+      {thing !== 'chart' && <div><Button kind="quiet" onClick={() => void print.run()}>Print a {thing}</Button></div>}
+      {printed && <p><a href={printed.pdf} target="_blank">{printed.says}</a>: {printed.remedy}.</p>}
+      <Complaint error={print.complaint} />
       {said.text === '' && <SchemaForm schema={schemaOf(forms.value.things[thing])} wish={said.wish} onWish={(wish) => onSaid({wish, text: ''})} prefix={`${thing}-`} />}
       {said.text !== '' && <><pre>{said.text}</pre><div><Button kind="quiet" onClick={() => onSaid(nothing)}>Say it field by field</Button></div></>}
       <label for="description-file">{said.text === '' ? 'Or its file' : 'Its file'}, {thing}.toml</label>

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/guide/printed_target.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "calibration/camera/marker_squares.h"
+#include "core/base/files.h"
+#include "core/rig/calibration.h"
+#include "core/rig/camera.h"
+#include "report/pdf_page.h"
+
+namespace weft::calibration {
+namespace {
+
+using report::PdfPage;
+
+constexpr std::array<double, 2> kUsualField_mm = {200, 133};
+constexpr double kPrinterBorder_mm = 6, kFoot_mm = 14, kLetters_mm = 2.2;
+constexpr double kMarkerShare = 0.75;
+constexpr const char* kBoardDictionary = "DICT_5X5_100";
+constexpr const char* kTagDictionary = "DICT_APRILTAG_36h11";
+constexpr int kBoardColumns = 10, kBoardRows = 7;
+constexpr double kBoardOfField = 0.6;   // a board is laid in many places of the frame
+constexpr double kSheetOfField = 0.84;  // its tags stay in sight where it is tilted and turned
+constexpr int kFirstSheetTag = 20;      // the table's own are from 0 on
+
+// Landscape.
+std::array<double, 2> size_of(PaperSize paper) {
+  constexpr std::array<std::array<double, 2>, 3> kSizes = {{{297, 210}, {420, 297}, {279.4, 215.9}}};
+  return kSizes[static_cast<std::size_t>(paper)];
+}
+
+double whole_half(double mm) {
+  return std::floor(2 * mm) / 2;
+}
+
+// With its lower left corner at (x, y).
+Result<void> add_marker(PdfPage& page, const char* dictionary, int id, double x_mm, double y_mm,
+                        double side_mm) {
+  const Result<std::vector<std::vector<bool>>> rows = marker_squares(dictionary, id);
+  if (!rows) return rows.error();
+  const auto count = static_cast<double>(rows->size());
+  const double square_mm = side_mm / count;
+  for (std::size_t row = 0; row < rows->size(); ++row) {
+    const std::vector<bool>& squares = (*rows)[row];
+    const double bottom_mm = y_mm + side_mm - static_cast<double>(row + 1) * square_mm;
+    for (std::size_t first = 0; first < squares.size();) {
+      const auto end = static_cast<std::size_t>(
+          std::find(squares.begin() + static_cast<std::ptrdiff_t>(first), squares.end(), !squares[first]) -
+          squares.begin());
+      if (squares[first])
+        page.fill(x_mm + static_cast<double>(first) * square_mm, bottom_mm,
+                  static_cast<double>(end - first) * square_mm, square_mm);
+      first = end;
+    }
+  }
+  return {};
+}
+
+// A bar by which the printer is checked, and what the page is.
+void add_foot(PdfPage& page, const std::string& says) {
+  constexpr double kBar_mm = 100, kHigh_mm = 1.2;
+  const double x_mm = page.width_mm() - kPrinterBorder_mm - kBar_mm - 4, y_mm = kPrinterBorder_mm + 2;
+  page.fill(x_mm, y_mm, kBar_mm, 0.3);
+  for (const double at_mm : {0.0, kBar_mm - 0.3}) page.fill(x_mm + at_mm, y_mm, 0.3, kHigh_mm);
+  page.write(x_mm, y_mm + 2, kLetters_mm,
+             "from end to end 100 mm: measure it, and print at 100 percent if it is not");
+  page.write(kPrinterBorder_mm + 4, y_mm, kLetters_mm, says);
+}
+
+Error too_large(const char* what, double width_mm, double height_mm, PaperSize paper) {
+  return {ErrorKind::kUsage, "the target does not fit the paper", what,
+          fmt::format("it is {:.0f} x {:.0f} mm with its border, and the paper is {}", width_mm, height_mm,
+                      kPaperNames[static_cast<std::size_t>(paper)]),
+          "take larger paper (--paper a3), or say a smaller field (--field-width, --field-height)"};
+}
+
+// Room for something above the foot, its lower left corner where it lies in the middle.
+Result<std::array<double, 2>> placed(const PdfPage& page, const char* what, double width_mm, double height_mm,
+                                     PaperSize paper) {
+  const double x_mm = (page.width_mm() - width_mm) / 2, y_mm = (page.height_mm() + kFoot_mm - height_mm) / 2;
+  if (x_mm < kPrinterBorder_mm || page.height_mm() - y_mm - height_mm < kPrinterBorder_mm)
+    return too_large(what, width_mm + 2 * kPrinterBorder_mm, height_mm + 2 * kPrinterBorder_mm + kFoot_mm,
+                     paper);
+  return std::array{x_mm, y_mm};
+}
+
+Result<PrintedTarget> board(std::array<double, 2> field_mm, PaperSize paper) {
+  const double square_mm = std::max(
+      whole_half(kBoardOfField * std::min(field_mm[0] / kBoardColumns, field_mm[1] / kBoardRows)), 1.0);
+  const double width_mm = kBoardColumns * square_mm, height_mm = kBoardRows * square_mm;
+  const auto [page_width, page_height] = size_of(paper);
+  PdfPage page(page_width, page_height);
+  const Result<std::array<double, 2>> at = placed(page, "board", width_mm, height_mm, paper);
+  if (!at) return at.error();
+  int id = 0;
+  for (int row = 0; row < kBoardRows; ++row) {
+    for (int column = 0; column < kBoardColumns; ++column) {
+      const double x_mm = (*at)[0] + column * square_mm, y_mm = (*at)[1] + height_mm - (row + 1) * square_mm;
+      if ((row + column) % 2 == 0) {
+        page.fill(x_mm, y_mm, square_mm, square_mm);
+        continue;
+      }
+      const double border_mm = (1 - kMarkerShare) / 2 * square_mm;
+      if (Result<void> ok = add_marker(page, kBoardDictionary, id++, x_mm + border_mm, y_mm + border_mm,
+                                       kMarkerShare * square_mm);
+          !ok)
+        return std::move(ok).error();
+    }
+  }
+  PrintedTarget target;
+  target.says = fmt::format("a ChArUco board of {} x {} squares of {} mm, {} x {} mm", kBoardColumns,
+                            kBoardRows, square_mm, width_mm, height_mm);
+  target.remedy =
+      "glue it to glass or aluminium: what bends is no board; measure ten squares and mend square_mm";
+  target.toml = fmt::format(
+      "# {}.\nkind = \"charuco\"\nsquares_x = {}\nsquares_y = {}\nsquare_mm = {}\nmarker_share = {}\n"
+      "dictionary = \"{}\"\n",
+      target.says, kBoardColumns, kBoardRows, square_mm, kMarkerShare, kBoardDictionary);
+  add_foot(page, "weft: " + target.says);
+  target.pdf = page.bytes();
+  return target;
+}
+
+Result<PrintedTarget> sheet(std::array<double, 2> field_mm, PaperSize paper) {
+  const double width_mm = whole_half(kSheetOfField * field_mm[0]),
+               height_mm = whole_half(kSheetOfField * field_mm[1]);
+  const double tag_mm = std::max(whole_half(0.06 * field_mm[1]), 4.0), quiet_mm = tag_mm / 4;
+  const auto [page_width, page_height] = size_of(paper);
+  PdfPage page(page_width, page_height);
+  const Result<std::array<double, 2>> at = placed(page, "sheet", width_mm, height_mm, paper);
+  if (!at) return at.error();
+  PrintedTarget target;
+  target.says = fmt::format("a white sheet of {} x {} mm with tags {} to {}", width_mm, height_mm,
+                            kFirstSheetTag, kFirstSheetTag + 7);
+  target.remedy =
+      "print it on matt paper without brightener, cut it along the corners, lay it flat; "
+      "say its reflectance in sheet.toml where it was measured";
+  target.toml =
+      fmt::format("# {}.\nwidth_mm = {}\nheight_mm = {}\nmargin_mm = 2\n", target.says, width_mm, height_mm);
+  const double u_mm = width_mm / 2 - tag_mm / 2 - quiet_mm - 2,
+               v_mm = height_mm / 2 - tag_mm / 2 - quiet_mm - 2;
+  int id = kFirstSheetTag;
+  for (const double v : {v_mm, 0.0, -v_mm}) {
+    for (const double u : {-u_mm, 0.0, u_mm}) {
+      if (u == 0 && v == 0) continue;
+      const double x_mm = (*at)[0] + width_mm / 2 + u - tag_mm / 2,
+                   y_mm = (*at)[1] + height_mm / 2 + v - tag_mm / 2;
+      if (Result<void> ok = add_marker(page, kTagDictionary, id, x_mm, y_mm, tag_mm); !ok)
+        return std::move(ok).error();
+      target.toml +=
+          fmt::format("\n[[tag]]\nid = {}\nside_mm = {}\ncentre_mm = [{}, {}]\n", id++, tag_mm, u, v);
+    }
+  }
+  // Where to cut: beyond the sheet, which stays white.
+  constexpr double kCut_mm = 3, kLine_mm = 0.15;
+  for (const double x_mm : {(*at)[0], (*at)[0] + width_mm}) {
+    page.fill(x_mm, (*at)[1] - kCut_mm, kLine_mm, kCut_mm);
+    page.fill(x_mm, (*at)[1] + height_mm, kLine_mm, kCut_mm);
+  }
+  add_foot(page, "weft: " + target.says);
+  target.pdf = page.bytes();
+  return target;
+}
+
+Result<PrintedTarget> tags(std::array<double, 2> field_mm, PaperSize paper) {
+  const double tag_mm = std::max(whole_half(0.07 * field_mm[1]), 4.0), quiet_mm = tag_mm / 4,
+               patch_mm = whole_half(1.2 * tag_mm);
+  const auto [page_width, page_height] = size_of(paper);
+  PdfPage page(page_width, page_height);
+  const double card_mm = tag_mm + 2 * quiet_mm, width_mm = 2 * (card_mm + patch_mm) + 20,
+               height_mm = 2 * card_mm + 10;
+  const Result<std::array<double, 2>> at = placed(page, "tags", width_mm, height_mm, paper);
+  if (!at) return at.error();
+  constexpr double kLine_mm = 0.15;
+  for (int id = 0; id < 4; ++id) {
+    const double x_mm = (*at)[0] + (id % 2) * (card_mm + patch_mm + 20),
+                 y_mm = (*at)[1] + (id / 2) * (card_mm + 10), card_width_mm = card_mm + patch_mm;
+    if (Result<void> ok = add_marker(page, kTagDictionary, id, x_mm + quiet_mm, y_mm + quiet_mm, tag_mm); !ok)
+      return std::move(ok).error();
+    page.fill(x_mm, y_mm, card_width_mm, kLine_mm);
+    page.fill(x_mm, y_mm + card_mm, card_width_mm, kLine_mm);
+    page.fill(x_mm, y_mm, kLine_mm, card_mm);
+    page.fill(x_mm + card_width_mm, y_mm, kLine_mm, card_mm);
+  }
+  PrintedTarget target;
+  target.says =
+      fmt::format("four cards for the corners of the table: tags 0 to 3 of {} mm, white beside each", tag_mm);
+  target.remedy =
+      "cut them out, glue them to the table in the corners of the picture, and calibrate with them in sight";
+  target.toml = fmt::format("# {}.\n", target.says);
+  for (int id = 0; id < 4; ++id)
+    target.toml +=
+        fmt::format("\n[[tag]]\nid = {}\nside_mm = {}\ndictionary = \"{}\"\n", id, tag_mm, kTagDictionary);
+  add_foot(page, "weft: " + target.says);
+  target.pdf = page.bytes();
+  return target;
+}
+
+}  // namespace
+
+void describe(Fields& fields, TargetRequest& r) {
+  fields.choice({.name = "target",
+                 .says = "What to print: board of the lens, sheet of the lights, tags of the table",
+                 .need = kMustSay,
+                 .option = ""},
+                r.part, kTargetNames);
+  fields.choice({"paper", "To print on, landscape"}, r.paper, kPaperNames);
+  fields.value({"field_width_mm",
+                "What the camera sees of the table, mm; default by the rig's calibration, else 200",
+                {20, 2000}},
+               r.field_width_mm);
+  fields.value({"field_height_mm", "The same; default by the rig's calibration, else 133", {20, 2000}},
+               r.field_height_mm);
+}
+
+std::optional<std::array<double, 2>> field_of(const std::filesystem::path& folder) {
+  const Result<Calibration> calibration =
+      folder.empty() ? Result<Calibration>(Error{}) : read_calibration(folder);
+  if (!calibration || !calibration->camera) return std::nullopt;
+  const CameraModel& camera = *calibration->camera;
+  const double right = camera.size.width - 1, bottom = camera.size.height - 1;
+  const auto across = [&](double x0, double y0, double x1, double y1) {
+    return length(point_on_plane(camera, x1, y1, 0) - point_on_plane(camera, x0, y0, 0));
+  };
+  return std::array{across(0, bottom / 2, right, bottom / 2), across(right / 2, 0, right / 2, bottom)};
+}
+
+Result<PrintedTarget> print_target(const TargetRequest& request,
+                                   const std::optional<std::array<double, 2>>& known_mm) {
+  const std::array<double, 2> known = known_mm.value_or(kUsualField_mm);
+  const std::array field_mm = {request.field_width_mm.value_or(known[0]),
+                               request.field_height_mm.value_or(known[1])};
+  constexpr std::array kPrint = {&board, &sheet, &tags};
+  const auto part = static_cast<std::size_t>(request.part);
+  Result<PrintedTarget> target = kPrint[part](field_mm, request.paper);
+  if (target) target->name = kTargetNames[part];
+  return target;
+}
+
+std::filesystem::path pdf_of_target(const capture::Rig& rig, const std::string& name) {
+  return rig.folder() / kTargetsFolder / (name + ".pdf");
+}
+
+Result<PrintedTarget> print_for_rig(const TargetRequest& request, const capture::Rig& rig) {
+  Result<PrintedTarget> target = print_target(request, field_of(capture::calibration_now(rig)));
+  if (!target) return target;
+  const std::filesystem::path pdf = pdf_of_target(rig, target->name);
+  Result<void> written = make_writable_folder(pdf.parent_path());
+  if (written) written = write_file(pdf, target->pdf);
+  if (written) written = write_file(pdf.parent_path() / (target->name + ".toml"), target->toml);
+  if (!written) return std::move(written).error();
+  return target;
+}
+
+}  // namespace weft::calibration

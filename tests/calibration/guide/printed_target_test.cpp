@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/guide/printed_target.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "calibration/camera/boards.h"
+#include "calibration/camera/markers.h"
+#include "calibration/guide/photograph_set.h"
+#include "calibration/run/board_photographs.h"
+#include "calibration/run/sheet_files.h"
+#include "core/base/files.h"
+#include "core/base/temporary_folder.h"
+#include "core/image/image.h"
+
+namespace weft::calibration {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr double kPixels = 16;  // a millimetre
+
+// The rectangles of a page, as a printer fills them; lines thinner than half a pixel are lost.
+Image<std::uint8_t> printed(const std::string& pdf, double width_mm, double height_mm) {
+  Image<std::uint8_t> picture({static_cast<int>(kPixels * width_mm), static_cast<int>(kPixels * height_mm)});
+  for (int row = 0; row < picture.height(); ++row) {
+    for (int column = 0; column < picture.width(); ++column) picture(column, row) = 255;
+  }
+  std::istringstream lines(pdf);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.ends_with(" re f")) continue;
+    std::istringstream numbers(line);
+    double x = 0, y = 0, width = 0, height = 0;
+    numbers >> x >> y >> width >> height;
+    const auto pixels = [](double points) {
+      return static_cast<int>(std::lround(kPixels * points * 25.4 / 72));
+    };
+    for (int row = picture.height() - pixels(y + height); row < picture.height() - pixels(y); ++row) {
+      for (int column = pixels(x); column < pixels(x + width); ++column) picture(column, row) = 0;
+    }
+  }
+  return picture;
+}
+
+TargetRequest with_field(double width_mm, double height_mm) {
+  TargetRequest request;
+  request.field_width_mm = width_mm;
+  request.field_height_mm = height_mm;
+  return request;
+}
+
+class PrintedTargets : public testing::Test {
+ protected:
+  void print_one(TargetPart part) {
+    TargetRequest request;
+    request.part = part;
+    const Result<PrintedTarget> target = print_target(request, std::nullopt);
+    ASSERT_TRUE(target) << target.error().message();
+    picture_ = printed(target->pdf, 297, 210);
+    file_ = folder_.path() / (target->name + ".toml");
+    ASSERT_TRUE(write_file(file_, target->toml));
+  }
+
+  TemporaryFolder folder_;
+  fs::path file_;
+  Image<std::uint8_t> picture_{{1, 1}};
+};
+
+TEST_F(PrintedTargets, IsABoardThatIsFoundByWhatIsWrittenOfIt) {
+  print_one(TargetPart::kBoard);
+  const Result<PrintedBoard> written = read_board_file(file_, {});
+  ASSERT_TRUE(written) << written.error().message();
+  const BoardSighting seen = find_board(picture_.plane(), written->board);
+  EXPECT_EQ(seen.fault, BoardFault::kNone) << seen.why;
+  ASSERT_EQ(seen.corners.size(), 54U);
+  const BoardCorner &first = seen.corners.front(), &last = seen.corners.back();
+  const double wide_px = std::hypot(last.px.x - first.px.x, last.px.y - first.px.y),
+               wide_mm = std::hypot(last.u_mm - first.u_mm, last.v_mm - first.v_mm);
+  EXPECT_NEAR(wide_px / kPixels, wide_mm, 0.05) << "at its true size";
+}
+
+TEST_F(PrintedTargets, IsASheetWhoseTagsLieWhereItIsWritten) {
+  print_one(TargetPart::kSheet);
+  const Result<TaggedSheet> written = read_sheet_file(file_);
+  ASSERT_TRUE(written) << written.error().message();
+  ASSERT_EQ(written->tags.size(), 8U);
+  const auto seen = find_tags(picture_.plane(), "DICT_APRILTAG_36h11");
+  ASSERT_TRUE(seen) << seen.error().message();
+  std::map<int, PixelPoint> centres;
+  for (const TagSighting& tag : *seen) {
+    PixelPoint& centre = centres[tag.id];
+    for (const PixelPoint& corner : tag.corners_px) centre.x += corner.x / 4, centre.y += corner.y / 4;
+  }
+  ASSERT_EQ(centres.size(), 8U);
+  const SheetTag& first = written->tags.front();
+  for (const SheetTag& tag : written->tags) {
+    EXPECT_NEAR((centres[tag.id].x - centres[first.id].x) / kPixels, tag.centre_u_mm - first.centre_u_mm, 0.1)
+        << tag.id;
+    EXPECT_NEAR((centres[first.id].y - centres[tag.id].y) / kPixels, tag.centre_v_mm - first.centre_v_mm, 0.1)
+        << tag.id;
+  }
+}
+
+TEST_F(PrintedTargets, OfTheTableIsFourTags) {
+  print_one(TargetPart::kTags);
+  const auto seen = find_tags(picture_.plane(), "DICT_APRILTAG_36h11");
+  ASSERT_TRUE(seen) << seen.error().message();
+  EXPECT_EQ(seen->size(), 4U);
+}
+
+TEST_F(PrintedTargets, FitsItsPaperOrSaysWhichWould) {
+  const Result<PrintedTarget> refused = print_target(with_field(700, 500), std::nullopt);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_THAT(refused.error().message(), HasSubstr("--paper a3"));
+  EXPECT_TRUE(print_target(with_field(60, 40), std::nullopt));
+}
+
+TEST_F(PrintedTargets, OfARigIsKnownToItsSets) {
+  capture::Rig rig;
+  rig.file = folder_.path() / "rig.toml";
+  ASSERT_TRUE(write_file(rig.file, "name = \"north\"\n"));
+  TargetRequest sheet;
+  sheet.part = TargetPart::kSheet;
+  ASSERT_TRUE(print_for_rig(sheet, rig));
+  EXPECT_TRUE(is_there(pdf_of_target(rig, "sheet")));
+  EXPECT_THAT(newest_description(folder_.path() / "sets", SetPart::kMoved), HasSubstr("[[tag]]"));
+  EXPECT_EQ(newest_description(folder_.path() / "sets", SetPart::kBoard), "");
+}
+
+}  // namespace
+}  // namespace weft::calibration
