@@ -168,34 +168,34 @@ Result<PrintedTarget> sheet(std::array<double, 2> field_mm, PaperSize paper) {
 }
 
 Result<PrintedTarget> tags(std::array<double, 2> field_mm, PaperSize paper) {
-  const double tag_mm = std::max(whole_half(0.07 * field_mm[1]), 4.0), quiet_mm = tag_mm / 4,
-               patch_mm = whole_half(1.2 * tag_mm);
+  constexpr double kGap_mm = 20, kLine_mm = 0.15;
+  const double tag_mm = std::max(whole_half(0.07 * field_mm[1]), 4.0), quiet_mm = kCardQuiet * tag_mm,
+               white_mm = kCardWhite * tag_mm, card_mm = tag_mm + 2 * quiet_mm, wide_mm = card_mm + white_mm;
   const auto [page_width, page_height] = size_of(paper);
   PdfPage page(page_width, page_height);
-  const double card_mm = tag_mm + 2 * quiet_mm, width_mm = 2 * (card_mm + patch_mm) + 20,
-               height_mm = 2 * card_mm + 10;
-  const Result<std::array<double, 2>> at = placed(page, "tags", width_mm, height_mm, paper);
+  const Result<std::array<double, 2>> at =
+      placed(page, "tags", 2 * wide_mm + kGap_mm, 2 * card_mm + kGap_mm, paper);
   if (!at) return at.error();
-  constexpr double kLine_mm = 0.15;
-  for (int id = 0; id < 4; ++id) {
-    const double x_mm = (*at)[0] + (id % 2) * (card_mm + patch_mm + 20),
-                 y_mm = (*at)[1] + (id / 2) * (card_mm + 10), card_width_mm = card_mm + patch_mm;
-    if (Result<void> ok = add_marker(page, kTagDictionary, id, x_mm + quiet_mm, y_mm + quiet_mm, tag_mm); !ok)
-      return std::move(ok).error();
-    page.fill(x_mm, y_mm, card_width_mm, kLine_mm);
-    page.fill(x_mm, y_mm + card_mm, card_width_mm, kLine_mm);
-    page.fill(x_mm, y_mm, kLine_mm, card_mm);
-    page.fill(x_mm + card_width_mm, y_mm, kLine_mm, card_mm);
-  }
   PrintedTarget target;
   target.says =
       fmt::format("four cards for the corners of the table: tags 0 to 3 of {} mm, white beside each", tag_mm);
   target.remedy =
-      "cut them out, glue them to the table in the corners of the picture, and calibrate with them in sight";
+      "cut them out, glue them into the corners of the picture, the white towards its middle, and calibrate "
+      "with them in sight";
   target.toml = fmt::format("# {}.\n", target.says);
-  for (int id = 0; id < 4; ++id)
+  for (int id = 0; id < 4; ++id) {
+    const double x_mm = (*at)[0] + (id % 2) * (wide_mm + kGap_mm),
+                 y_mm = (*at)[1] + (1 - id / 2) * (card_mm + kGap_mm);
+    const double tag_x_mm = x_mm + quiet_mm + (id % 2 == 0 ? 0 : white_mm);
+    if (Result<void> ok = add_marker(page, kTagDictionary, id, tag_x_mm, y_mm + quiet_mm, tag_mm); !ok)
+      return std::move(ok).error();
+    page.fill(x_mm, y_mm, wide_mm, kLine_mm);
+    page.fill(x_mm, y_mm + card_mm, wide_mm, kLine_mm);
+    page.fill(x_mm, y_mm, kLine_mm, card_mm);
+    page.fill(x_mm + wide_mm, y_mm, kLine_mm, card_mm);
     target.toml +=
         fmt::format("\n[[tag]]\nid = {}\nside_mm = {}\ndictionary = \"{}\"\n", id, tag_mm, kTagDictionary);
+  }
   add_foot(page, "weft: " + target.says);
   target.pdf = page.bytes();
   return target;

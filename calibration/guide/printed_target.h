@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/run/tag_cards.h"
 #include "capture/rig.h"
 #include "core/base/result.h"
 #include "core/describe/fields.h"
@@ -15,9 +16,6 @@
 // that stay on its table. They fit what the camera sees of it.
 
 namespace weft::calibration {
-
-/// A rig's own targets, beside its rig file: what was printed for it, board.toml, sheet.toml and tags.toml.
-inline constexpr const char* kTargetsFolder = "targets";
 
 enum class TargetPart { kBoard, kSheet, kTags };
 inline constexpr std::array kTargetNames = {"board", "sheet", "tags"};

@@ -11,6 +11,7 @@
 #include "calibration/run/described.h"
 #include "calibration/run/rig_evidence.h"
 #include "calibration/run/sheet_files.h"
+#include "calibration/run/tag_cards.h"
 #include "core/base/files.h"
 #include "core/toml/field_toml.h"
 #include "core/toml/toml_json.h"
@@ -71,6 +72,16 @@ Result<std::vector<WhitePatch>> read_patches(const fs::path& file, Size frame, c
     }
   }
   return patches;
+}
+
+/// The white beside the tags, where the rig has such cards.
+Result<std::vector<WhitePatch>> white_of_cards(const Calibration& calibration, const WhitePatch& common) {
+  std::vector<WhitePatch> patches = patches_of_cards(calibration, common);
+  if (!patches.empty()) return patches;
+  return Error{ErrorKind::kBadData, "white patches cannot be used", "tags.toml",
+               "no card with its white lies whole in the frame",
+               "lay the white of each card towards the middle of the picture, and calibrate the camera with "
+               "them in sight"};
 }
 
 struct MeasuredPatch {
@@ -150,10 +161,12 @@ void describe(Fields& fields, CalibratePatchesOptions& o) {
                 .path = PathTo::kSession,
                 .option = ""},
                o.session);
-  fields.value({.name = "patches",
-                .says = "patches.toml: where they lie; default beside the session",
-                .path = PathTo::kFile},
-               o.patches);
+  fields.value(
+      {.name = "patches",
+       .says = "patches.toml: where they lie; default beside the session, else the white of the rig's "
+               "cards (weft target tags)",
+       .path = PathTo::kFile},
+      o.patches);
   fields.value({.name = "from",
                 .says = "The calibration to add them to; default the session's own",
                 .path = PathTo::kFolder},
@@ -173,7 +186,9 @@ Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& option
   const fs::path from = options.from.empty() ? options.session / "calibration" : options.from;
   const WhitePatch common = {.delta = options.paper_delta.value_or(reported_delta(from)),
                              .height_mm = tag_height_mm(plan->calibration.fiducials)};
-  Result<std::vector<WhitePatch>> patches = read_patches(file, plan->size, common);
+  const bool is_by_cards = options.patches.empty() && !is_there(file) && has_cards(options.session);
+  Result<std::vector<WhitePatch>> patches =
+      is_by_cards ? white_of_cards(plan->calibration, common) : read_patches(file, plan->size, common);
   if (!patches) return std::move(patches).error();
   if (!std::holds_alternative<NearLights>(*plan->calibration.lights)) {
     return bad_patches(options.session.string(), "the calibration's lights are distant");

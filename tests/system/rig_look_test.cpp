@@ -7,9 +7,14 @@
 
 #include <filesystem>
 #include <utility>
+#include <variant>
+#include <vector>
 
+#include "calibration/run/calibrate_patches.h"
 #include "calibration/run/history.h"
+#include "calibration/run/tag_cards.h"
 #include "calibration/run/update.h"
+#include "core/base/files.h"
 #include "core/rig/session.h"
 #include "solve/run/solve_session.h"
 #include "tests/system/checked_rig.h"
@@ -77,6 +82,40 @@ TEST_F(RigLook, WhereNothingOfTheRigIsInSightThatIsSaid) {
   const auto look = calibration::look_by(*read_calibration(root_ / "rig" / "first"), {});
   EXPECT_EQ(look.state, RigPlace::kUnseen);
   EXPECT_THAT(look.says, HasSubstr("nothing of the rig is in sight"));
+}
+
+TEST_F(RigLook, TheWhiteOfPrintedCardsNeedsNoFileOfPatches) {
+  simulator::Scene scene = checked_rig();
+  std::erase_if(scene.targets,
+                [](const auto& target) { return kind_of(target.pattern) != simulator::TargetKind::kTag; });
+  const std::vector<simulator::TargetSettings> tags = scene.targets;
+  for (const simulator::TargetSettings& tag : tags) {
+    const auto& [dictionary, id, side_mm, margin_mm] = std::get<simulator::TagSettings>(tag.pattern);
+    simulator::TargetSettings& white = scene.targets.emplace_back(tag);
+    white.pattern = simulator::PaperSettings{calibration::kCardWhite * side_mm, 1.5 * side_mm};
+    white.white = 0.88;
+    white.centre_mm.x += (id % 2 == 0 ? 1 : -1) * (0.75 + calibration::kCardWhite / 2) * side_mm;
+  }
+  Calibration known = *read_calibration(root_ / "rig" / "first");
+  known.patches.clear();
+  simulator::SimulateOptions options;
+  options.truth = false;
+  options.calibration = known;
+  const fs::path rig = root_ / "rig with cards";
+  fs::create_directories(rig / "scans");
+  ASSERT_TRUE(simulator::simulate_session(scene, rig / "scans" / "table.weft", options));
+  const auto nobody_said = calibration::calibrate_patches(
+      {.session = rig / "scans" / "table.weft", .output = rig / "with patches"}, {});
+  ASSERT_FALSE(nobody_said) << "no card was printed";
+
+  fs::create_directories(rig / "targets");
+  ASSERT_TRUE(write_file(rig / "targets" / "tags.toml", "# cards\n"));
+  const auto measured = calibration::calibrate_patches(
+      {.session = rig / "scans" / "table.weft", .output = rig / "with patches"}, {});
+  ASSERT_TRUE(measured) << measured.error().message();
+  ASSERT_EQ(measured->calibration.patches.size(), 4U);
+  for (const WhitePatch& patch : measured->calibration.patches)
+    EXPECT_NEAR(patch.reflectance_rgb[1], 0.88, 0.01);
 }
 
 }  // namespace
