@@ -13,9 +13,9 @@
 namespace weft::calibration {
 
 struct CalibratePatchesOptions {
-  std::filesystem::path session = {};  ///< taken with the rig as it was calibrated
-  std::filesystem::path patches = {};  ///< where white patches lie in its pictures; empty: beside the
-                                       ///< session, else by the rig's cards (calibration/run/tag_cards.h)
+  std::filesystem::path session = {};      ///< taken with the rig as it was calibrated
+  std::filesystem::path patches = {};      ///< where white patches lie in its pictures; empty: beside the
+                                           ///< session, else by the rig's cards (calibration/run/tag_cards.h)
   std::filesystem::path from = {};         ///< the calibration to add them to; empty: the session's own
   std::filesystem::path output = {};       ///< the new calibration, which must not be there yet
   std::optional<double> paper_delta = {};  ///< as CalibrateCheckOptions has it

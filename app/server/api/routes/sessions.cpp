@@ -7,9 +7,11 @@
 #include "app/server/api/api.h"
 #include "app/server/api/bodies/session_query.h"
 #include "app/server/api/routes/session_choice.h"
+#include "core/describe/field_json.h"
 #include "library/catalogue/metadata.h"
 #include "library/catalogue/session_files.h"
 #include "library/catalogue/session_name.h"
+#include "library/catalogue/session_verdict.h"
 #include "solve/session/current.h"
 #include "solve/session/left_out_shots.h"
 
@@ -113,6 +115,7 @@ Result<Reply> one_session(const RigParts& parts, const Call& call) {
                      {"frames", std::move(frames)},
                      {"histograms_complete", whole},
                      {"clipping_by_led", std::move(by_led)},
+                     {"verdict", object_of(library::verdict_of(*session))},
                      {"warnings", warnings_of(*session)}});
 }
 

@@ -6610,6 +6610,7 @@ export interface components {
                 /** @description Shares of red, green and blue photosites at or above white */
                 clipped_rgb: number[];
             }[];
+            verdict: components["schemas"]["ScanVerdict"];
             warnings: string[];
         };
         NextName: {
@@ -7747,7 +7748,7 @@ export interface components {
             request_id?: string;
             /** @description A scan of the table while the calibration is fresh: its name */
             session: string;
-            /** @description patches.toml: where they lie; default beside the session; below the rig file's folder */
+            /** @description patches.toml: where they lie; default beside the session, else the white of the rig's cards (weft target tags); below the rig file's folder */
             patches?: string;
             /** @description The calibration to add them to; default the session's own; below the rig file's folder */
             from?: string;

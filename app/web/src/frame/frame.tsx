@@ -102,7 +102,6 @@ function Warnings() {
           <Button onClick={() => location.reload()}>Reload</Button>
         </div>
       )}
-      {rig.value?.warnings.map((warning) => <div key={warning} class="strip warning" role="status">{warning}</div>)}
     </>
   );
 }

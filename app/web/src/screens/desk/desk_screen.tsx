@@ -6,6 +6,10 @@ import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
 import {isDark} from '../../state/dark';
+import {rig} from '../../state/rig';
+import {useAction} from '../../ui/action';
+import {Button} from '../../ui/button';
+import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
 import {ClothForm} from './cloth_form';
 import {followFinder, looks, shots, takeShot} from './devices';
@@ -42,6 +46,17 @@ function useCalibrated(): Calibrated {
 
 const wantedParts = ['camera', 'response', 'lights'];
 
+/** A scan that did not end. */
+function GoOn({name}: {name: string}) {
+  const goOn = useAction(() => answer(api.POST('/api/v1/scan', {body: {session: name}})));
+  return (
+    <p>
+      <Button isDisabled={goOn.isBusy || !rig.value?.can.includes('scan')} onClick={() => void goOn.run()}>Go on with {name}</Button>
+      <Complaint error={goOn.complaint} />
+    </p>
+  );
+}
+
 /** With nothing to look at yet: what to do first. */
 function FirstSteps({parts}: Pick<Calibrated, 'parts'>) {
   const missing = wantedParts.filter((part) => parts && !parts.includes(part));
@@ -55,6 +70,7 @@ function FirstSteps({parts}: Pick<Calibrated, 'parts'>) {
   }
   return (
     <Empty says="Nothing to look at yet.">
+      {rig.value?.resumable.slice(0, 3).map((name) => <GoOn key={name} name={name} />)}
       <ol>
         <li>Lay a cloth on the table. <kbd>v</kbd> shows what the camera sees.</li>
         <li><kbd>t</kbd> takes a test shot: it tells how sharp and how bright it is.</li>

@@ -8,6 +8,7 @@ import {Complaint} from '../../ui/complaint';
 import {Mark} from '../../ui/mark';
 import {digits} from '../../ui/say';
 import {useLatest} from '../../ui/use_latest';
+import {VerdictLine} from '../../ui/verdict';
 import {percentOf} from '../../ui/words';
 import {useJobs} from '../jobs/jobs';
 import {Price} from '../jobs/price';
@@ -83,18 +84,6 @@ function Preview({session}: {session: string}) {
   );
 }
 
-/** The first ones; the others where somebody asks for them. */
-function Warnings({all}: {all: readonly string[]}) {
-  const shown = 2;
-  const line = (warning: string) => <p key={warning}><Mark verdict="warning" /> {warning}</p>;
-  return (
-    <>
-      {all.slice(0, shown).map(line)}
-      {all.length > shown && <details><summary>{all.length - shown} more warnings</summary>{all.slice(shown).map(line)}</details>}
-    </>
-  );
-}
-
 export function LastScan({session}: {session: Session}) {
   useJobs();
   const current = session.frames.filter((frame) => frame.superseded_by === null);
@@ -103,9 +92,8 @@ export function LastScan({session}: {session: Session}) {
       <div class="row">
         <h2>{session.fabric}</h2>
         <a href={`/sessions/${session.name}`}>{session.name}</a>
-        <span class="dim">{session.state}</span>
       </div>
-      <Warnings all={session.warnings} />
+      <VerdictLine verdict={session.verdict} warnings={session.warnings} />
       <div class="results">
         <Preview session={session.name} />
         <ul class="frames">{current.map((frame) => <FrameCard key={frame.index} session={session} frame={frame} />)}</ul>

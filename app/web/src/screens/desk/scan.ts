@@ -65,9 +65,14 @@ export function followScanned(): () => void {
     const timer = setTimeout(() => void fetchScanned(session.name).catch(() => {}), histogramsEvery_ms);
     return () => clearTimeout(timer);
   });
+  // What is made of it tells more of what it is worth.
+  const stopJobs = onEvent('job', (job) => {
+    if (job.ended !== '' && job.of === scanned.value?.name) void fetchScanned(job.of).catch(() => {});
+  });
   return () => {
     stopEnds();
     stopCounting();
+    stopJobs();
   };
 }
 

@@ -7,13 +7,12 @@ import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Mark, type Verdict} from '../../ui/mark';
-import {counted} from '../../ui/say';
 import {useLatest} from '../../ui/use_latest';
+import {VerdictLine} from '../../ui/verdict';
 import {timeOf} from '../../ui/words';
 import {jobs, queueJob, useJobs} from '../jobs/jobs';
 import {hasEnded} from '../jobs/queue';
 import {JobLine} from '../material/job_line';
-import {GradeMark} from './grade_mark';
 
 type Link = Schemas['ChainLink'];
 
@@ -46,17 +45,7 @@ export function ChainPanel({session: of}: {session: Schemas['Session']}) {
   return (
     <section class="panel chain" aria-labelledby="chain-title">
       <h2 id="chain-title">From photographs to files</h2>
-      {chain && (
-        <p>
-          <GradeMark verdict={chain.verdict} /> {chain.verdict.says}. <strong>{chain.verdict.action}</strong>
-        </p>
-      )}
-      {of.warnings.length > 0 && (
-        <details>
-          <summary>{counted(of.warnings.length, 'warning')}</summary>
-          <ul>{of.warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>
-        </details>
-      )}
+      {chain && <VerdictLine verdict={chain.verdict} warnings={of.warnings} />}
       <ol>{links.map((link) => <Row key={`${link.name} ${link.folder}`} session={session} link={link} />)}</ol>
       <div class="row">
         <Choice

@@ -3,7 +3,7 @@ import {counted} from '../../ui/say';
 import {textIn} from '../../ui/fields';
 import {bytesOf, timeOf} from '../../ui/words';
 import type {Summary} from './metadata';
-import {GradeMark} from './grade_mark';
+import {GradeMark} from '../../ui/verdict';
 
 /** The cloth relit, or photographed; an empty place where there is neither. */
 function Thumbnail({session: {thumbnail}}: {session: Summary}) {
