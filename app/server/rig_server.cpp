@@ -45,13 +45,13 @@ struct RigServer::State {
         log(lock.folder() / "log", std::move(say)),
         pictures(lock.folder() / "pictures"),
         views(lock.folder() / "views"),
+        watch(rig, [this] { keeper.tell_status(); }),
         controls([this](const std::string& name) { tell_controls(name); }),
         screens(rig),
         attendance(rig, std::move(open), lock.folder() / "test-shots", screens,
                    {[this] { keeper.tell_status(); }, [this](const TestShot& shot) { tell_shot(shot); }}),
         sets(rig, keeper, events),
         framing(rig),
-        watch(rig),
         keeper(rig, attendance, screens, std::move(run), events, log, pictures) {
     keeper.on_controls([this] { return controls.holder(); });
     keeper.on_place([this] { return watch.place(); });
@@ -97,9 +97,7 @@ struct RigServer::State {
     events.add("job", event_of(job));
     if (job.ended.empty()) return;
     library->expire();
-    if (job.spec.kind != kRigCheck || job.state != JobState::kDone) return;
-    watch.saw(job.spec.arguments.back());
-    keeper.tell_status();
+    if (job.spec.kind == kRigCheck && job.state == JobState::kDone) watch.saw(job.spec.arguments.back());
   }
 
   Result<void> open_jobs_and_library(const RigServerOptions& wish) {
@@ -130,6 +128,7 @@ struct RigServer::State {
   FramePictures pictures;
   ViewStore views;
   PixelTables pixels;
+  RigWatch watch;  // its jobs tell it of what they saw until they end
   std::unique_ptr<LibraryService> library;
   std::unique_ptr<JobQueue> jobs;
   Controls controls;
@@ -138,7 +137,6 @@ struct RigServer::State {
   Attendance attendance;
   SetKeeper sets;  // outlives what the keeper does for it
   FramingGuide framing;
-  RigWatch watch;
   RigKeeper keeper;
   std::optional<RigParts> parts;
   GuardRules guard;
@@ -218,6 +216,7 @@ std::vector<std::string> RigServer::calls() const {
 
 bool RigServer::stop(std::chrono::milliseconds most) {
   state_->controls.stop();
+  state_->watch.stop();
   const bool ended = state_->keeper.stop(most) && state_->attendance.stop(most);
   if (!state_->events.closed()) {
     state_->log.add("daemon_ended",

@@ -107,7 +107,6 @@ Result<Reply> accept(const RigParts& parts, const Call& call) {
     if (Result<void> named = calibration::name_calibration(parts.rig.file, *folder); !named)
       return std::move(named).error();
     parts.watch.hold_against_calibration();
-    parts.keeper.tell_status();
   }
   Json document = json_of(*change);
   document["words"] = words_of(*change);
