@@ -55,6 +55,7 @@ struct MovementOptions {
   double corner_sigma_px = 0.1;
   double flicker = 0.003;         ///< of a LED's brightness, relative
   double reading_sigma = 0.0002;  ///< of a place's mean reading, relative
+  double few_pixels = 1;          ///< times LitPlace::reading_sigma, which adds to that
   double tilt_sigma_deg = 0.1;    ///< of a place against its normal: paper is not flat
   double paper_delta = 0;         ///< LitPlace::delta of places that have none
   double least_evidence = 6;      ///< by which BIC must fall: strong (Kass and Raftery, JASA 1995)

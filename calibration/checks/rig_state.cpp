@@ -217,7 +217,7 @@ Eigen::MatrixXd RigModel::covariance(const RigState& state) const {
       const Reading &a = readings_[i], &b = readings_[j];
       double& s = sum(first + static_cast<Eigen::Index>(i), first + static_cast<Eigen::Index>(j));
       if (i == j) {
-        const double few = places_[a.place].reading_sigma;
+        const double few = options_.few_pixels * places_[a.place].reading_sigma;
         s += options_.reading_sigma * options_.reading_sigma + few * few;
       }
       if (a.led == b.led) s += options_.flicker * options_.flicker;

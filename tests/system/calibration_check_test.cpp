@@ -209,6 +209,7 @@ TEST_F(CalibrationCheck, SaysWhereWhatIsSeenIsExplainedWorseThanUsual) {
   options.movement.corner_sigma_px *= share;
   options.movement.flicker *= share;
   options.movement.reading_sigma *= share;
+  options.movement.few_pixels *= share;
   options.movement.tilt_sigma_deg *= share;
   const auto worse = calibration::calibrate_check_rig(options, {});
   ASSERT_TRUE(worse) << worse.error().message();

@@ -561,6 +561,8 @@ export interface paths {
                 401: components["responses"]["NoToken"];
                 403: components["responses"]["ForeignOrigin"];
                 409: components["responses"]["Busy"];
+                413: components["responses"]["TooLong"];
+                415: components["responses"]["NotJson"];
                 421: components["responses"]["ForeignHost"];
                 /** @description It cannot be written */
                 500: {
