@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <fstream>
 #include <thread>
@@ -102,7 +103,10 @@ capture::KeptFrame take(Session& session, int index) {
 }  // namespace
 
 ScriptedRig::ScriptedRig(const std::string& name) {
-  const fs::path folder = fs::path(testing::TempDir()) / fmt::format("weft_{}_{}", name, getpid());
+  // A folder of its own: a catalogue's thread is not waited for, and closes its file when it comes to that.
+  static std::atomic<int> count = 0;
+  const fs::path folder =
+      fs::path(testing::TempDir()) / fmt::format("weft_{}_{}_{}", name, getpid(), count++);
   fs::remove_all(folder);
   fs::create_directories(folder);
   rig.file = folder / "rig.toml";
