@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,11 +14,11 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
-#include "calibration/run/folders_with.h"
 #include "calibration/run/rig_look.h"
 #include "capture/rig.h"
 #include "core/describe/error_json.h"
 #include "core/describe/field_json.h"
+#include "library/run/survey.h"
 
 namespace weft::app {
 namespace {
@@ -33,23 +32,28 @@ struct CheckArguments {
   bool strict = false;
 };
 
+/// By the time of their first photograph; what has none is left out.
 Result<std::vector<Session>> sessions_of(const CheckArguments& a) {
-  std::vector<Session> sessions;
-  if (a.sessions.empty()) {
+  std::vector<std::string> folders;
+  for (const fs::path& folder : a.sessions) folders.push_back(folder.string());
+  if (folders.empty()) {
     const Result<capture::Rig> rig = capture::read_rig(find_rig(a.rig));
     if (!rig) return rig.error();
-    Result<std::vector<Session>> all = calibration::sessions_below(rig->scan.sessions);
-    if (!all) return std::move(all).error();
-    if (!all->empty()) sessions.push_back(std::move(all->back()));
+    folders.push_back(rig->scan.sessions.string());
   }
-  for (const fs::path& folder : a.sessions) {
-    Result<std::vector<Session>> below = calibration::sessions_below(fs::absolute(folder).lexically_normal());
-    if (!below) return std::move(below).error();
-    std::ranges::move(*below, std::back_inserter(sessions));
+  const Result<std::vector<fs::path>> found = library::sessions_below(folders);
+  if (!found) return found.error();
+  std::vector<Session> sessions;
+  for (const fs::path& folder : *found) {
+    Result<Session> session = read_session(folder);
+    if (!session && found->size() == 1) return std::move(session).error();
+    if (session && !session->shots.empty()) sessions.push_back(std::move(*session));
   }
+  std::ranges::stable_sort(sessions, {}, [](const Session& each) { return each.shots.front().time; });
+  if (a.sessions.empty() && sessions.size() > 1) sessions.erase(sessions.begin(), sessions.end() - 1);
   if (!sessions.empty()) return sessions;
-  return Error{ErrorKind::kNoInput, "there is no scan to look at",
-               a.sessions.empty() ? "" : a.sessions.front().string(), "", "scan something, or name sessions"};
+  return Error{ErrorKind::kNoInput, "there is no scan to look at", folders.front(), "",
+               "scan something, or name sessions"};
 }
 
 Result<RigLook> look_of(const Session& session, const CheckArguments& a, const CommonArguments& common) {

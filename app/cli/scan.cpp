@@ -186,7 +186,9 @@ void look_at_rig(const fs::path& folder, const CommonArguments& common) {
   const Result<Session> session = read_session(folder);
   if (!session || !is_there(session->calibration_folder())) return;
   ProgressLine line(common.quiet);
-  static_cast<void>(calibration::look_at_scan(*session, {common.threads, stop_on_signal(), line.callback()}));
+  const auto look = calibration::look_at_scan(*session, {common.threads, stop_on_signal(), line.callback()});
+  if (!look && look.error().kind != ErrorKind::kBadData && !common.quiet)
+    note("the rig was not checked: " + look.error().message());
 }
 
 /// The call that takes the LED's shot of a finished session once more.

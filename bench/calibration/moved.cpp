@@ -299,6 +299,25 @@ std::vector<Fiducial> fiducials_of(const std::vector<calibration::TagSighting>& 
   return fiducials;
 }
 
+/// A rig, itself to be changed, and what a calibration knows of it.
+struct KnownRig {
+  Scene plain, now;
+  simulator::SceneRig rig;
+  Calibration calibration;
+};
+
+Result<KnownRig> known_rig(int seed, Draws& draws) {
+  const Scene plain = rig_scene(seed);
+  const auto rig = rig_of(plain);
+  if (!rig) return rig.error();
+  KnownRig known = {plain, with_own_leds(plain, rig->leds), *rig, calibrated(plain, *rig, draws)};
+  known.now.camera.exposure_us = rig->exposure_us;
+  const auto tags = tags_of(plain, rig->camera);
+  if (!tags) return tags.error();
+  known.calibration.fiducials = fiducials_of(*tags, rig->camera);
+  return known;
+}
+
 struct Session {
   Truth truth;
   Movement movement;
@@ -308,15 +327,9 @@ struct Session {
 
 Result<Session> run_session(const MishapCase& c, int seed) {
   Draws draws(seed);
-  const Scene plain = rig_scene(seed);
-  const auto rig = rig_of(plain);
-  if (!rig) return rig.error();
-  Scene now = with_own_leds(plain, rig->leds);
-  now.camera.exposure_us = rig->exposure_us;
-  Calibration calibration = calibrated(plain, *rig, draws);
-  const auto tags = tags_of(plain, rig->camera);
-  if (!tags) return tags.error();
-  calibration.fiducials = fiducials_of(*tags, rig->camera);
+  Result<KnownRig> known = known_rig(seed, draws);
+  if (!known) return std::move(known).error();
+  auto& [plain, now, rig, calibration] = *known;
   Session session;
   session.truth = happen(now, c.mishap, draws);
   now.seed += 500;
@@ -332,7 +345,7 @@ Result<Session> run_session(const MishapCase& c, int seed) {
   session.movement = std::move(*movement);
   session.cost = calibration::cost_of(*calibration.camera, std::get<NearLights>(*calibration.lights),
                                       session.movement.camera, session.movement.lights);
-  session.true_cost_deg = calibration::cost_of(rig->camera, rig->leds, rig->camera, moved->leds).mean_deg;
+  session.true_cost_deg = calibration::cost_of(rig.camera, rig.leds, rig.camera, moved->leds).mean_deg;
   return session;
 }
 
@@ -426,21 +439,15 @@ void shift_back(CameraModel& camera, NearLights& lights, Vec3 table_mm) {
 
 Result<Watched> run_knock(Knock knock, int seed) {
   Draws draws(seed);
-  const Scene plain = rig_scene(seed);
-  const auto rig = rig_of(plain);
-  if (!rig) return rig.error();
-  Scene now = with_own_leds(plain, rig->leds);
-  now.camera.exposure_us = rig->exposure_us;
-  Calibration calibration = calibrated(plain, *rig, draws);
-  const auto tags = tags_of(plain, rig->camera);
-  if (!tags) return tags.error();
-  calibration.fiducials = fiducials_of(*tags, rig->camera);
-  calibration.patches = patches_of(plain, rig->camera, draws);
+  Result<KnownRig> known = known_rig(seed, draws);
+  if (!known) return std::move(known).error();
+  auto& [plain, now, rig, calibration] = *known;
+  calibration.patches = patches_of(plain, rig.camera, draws);
   happen(now, knock, draws);
   now.seed += 500;
   const auto moved = rig_of(now);
   if (!moved) return moved.error();
-  auto seen = sightings_of(now, moved->camera, static_cast<int>(rig->leds.leds.size()));
+  auto seen = sightings_of(now, moved->camera, static_cast<int>(rig.leds.leds.size()));
   if (!seen) return std::move(seen).error();
   Watched watched;
   const auto places = calibration::evidence_of(calibration, *seen).places;
@@ -448,9 +455,9 @@ Result<Watched> run_knock(Knock knock, int seed) {
   CameraModel camera = moved->camera;
   NearLights lights = moved->leds;
   shift_back(camera, lights, now.targets.front().centre_mm - plain.targets.front().centre_mm);
-  watched.raw_deg = calibration::cost_of(rig->camera, rig->leds, camera, lights).mean_deg;
+  watched.raw_deg = calibration::cost_of(rig.camera, rig.leds, camera, lights).mean_deg;
   const calibration::MovementCost paid =
-      calibration::cost_of(rig->camera, calibration::levelled(rig->leds, lights, places), camera, lights);
+      calibration::cost_of(rig.camera, calibration::levelled(rig.leds, lights, places), camera, lights);
   watched.paid_deg = paid.mean_deg;
   watched.paid_albedo = std::max(std::abs(paid.albedo_factor - 1), paid.albedo_unevenness);
   return watched;

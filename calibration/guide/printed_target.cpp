@@ -219,8 +219,8 @@ void describe(Fields& fields, TargetRequest& r) {
 }
 
 std::optional<std::array<double, 2>> field_of(const std::filesystem::path& folder) {
-  const Result<Calibration> calibration =
-      folder.empty() ? Result<Calibration>(Error{}) : read_calibration(folder);
+  if (folder.empty()) return std::nullopt;
+  const Result<Calibration> calibration = read_calibration(folder);
   if (!calibration || !calibration->camera) return std::nullopt;
   const CameraModel& camera = *calibration->camera;
   const double right = camera.size.width - 1, bottom = camera.size.height - 1;
@@ -246,13 +246,31 @@ std::filesystem::path pdf_of_target(const capture::Rig& rig, const std::string& 
   return rig.folder() / kTargetsFolder / (name + ".pdf");
 }
 
+namespace {
+
+// What was written of another target, perhaps measured by hand, stays beside the new one.
+Result<void> set_aside(const std::filesystem::path& file, const std::string& text) {
+  if (!is_there(file)) return {};
+  if (const Result<std::string> before = read_text(file); before && *before == text) return {};
+  std::filesystem::path aside = file;
+  for (int n = 1; is_there(aside); ++n)
+    aside.replace_filename(fmt::format("{}.before-{}.toml", file.stem().string(), n));
+  std::error_code failed;
+  std::filesystem::rename(file, aside, failed);
+  return failed ? Result<void>(cannot_write(aside, failed.value())) : Result<void>();
+}
+
+}  // namespace
+
 Result<PrintedTarget> print_for_rig(const TargetRequest& request, const capture::Rig& rig) {
   Result<PrintedTarget> target = print_target(request, field_of(capture::calibration_now(rig)));
   if (!target) return target;
   const std::filesystem::path pdf = pdf_of_target(rig, target->name);
+  const std::filesystem::path toml = pdf.parent_path() / (target->name + ".toml");
   Result<void> written = make_writable_folder(pdf.parent_path());
+  if (written) written = set_aside(toml, target->toml);
   if (written) written = write_file(pdf, target->pdf);
-  if (written) written = write_file(pdf.parent_path() / (target->name + ".toml"), target->toml);
+  if (written) written = write_file(toml, target->toml);
   if (!written) return std::move(written).error();
   return target;
 }

@@ -33,7 +33,7 @@ void describe(Fields& fields, TargetRequest& request);
 
 struct PrintedTarget {
   std::string name;    ///< "board"
-  std::string toml;    ///< board.toml or sheet.toml
+  std::string toml;    ///< what is written of it: board.toml
   std::string pdf;     ///< one page at its true size, with a bar of 100 mm to hold the printer to
   std::string says;    ///< what it is, in a line
   std::string remedy;  ///< what to do with it, in a line
@@ -44,8 +44,8 @@ struct PrintedTarget {
 Result<PrintedTarget> print_target(const TargetRequest& request,
                                    const std::optional<std::array<double, 2>>& known_mm);
 
-/// The same for a rig, whose own it becomes: NAME.toml and NAME.pdf in its targets/. What was there is
-/// written over. Errors of print_target(), kCannotCreate, kInputOutput.
+/// The same for a rig, whose own it becomes: NAME.toml and NAME.pdf in its targets/. What was written of
+/// another one there is kept as NAME.before-N.toml. Errors of print_target(), kCannotCreate, kInputOutput.
 Result<PrintedTarget> print_for_rig(const TargetRequest& request, const capture::Rig& rig);
 std::filesystem::path pdf_of_target(const capture::Rig& rig, const std::string& name);
 

@@ -11,7 +11,6 @@
 
 #include "calibration/run/accept.h"
 #include "calibration/run/check_result.h"
-#include "calibration/run/folders_with.h"
 #include "calibration/run/movement_words.h"
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
@@ -49,6 +48,24 @@ struct Records {
   std::vector<DatedCheck> checks;
   std::vector<std::string> warnings;
 };
+
+/// Folders at and below `root` that hold a file of this name, in order of their paths; those inside sessions
+/// are copies and left out. kNoInput where `root` cannot be read.
+Result<std::vector<fs::path>> folders_with(const fs::path& root, const char* name) {
+  std::vector<fs::path> found;
+  std::error_code failed;
+  fs::recursive_directory_iterator walk(root, fs::directory_options::skip_permission_denied, failed), end;
+  for (; !failed && walk != end; walk.increment(failed)) {
+    std::error_code ignored;
+    if (!walk->is_directory(ignored)) continue;
+    if (is_there(walk->path() / name)) found.push_back(walk->path());
+    if (is_there(walk->path() / "session.json")) walk.disable_recursion_pending();
+  }
+  if (failed) return cannot_read(root, failed.value());
+  if (is_there(root / name)) found.push_back(root);
+  std::sort(found.begin(), found.end());
+  return found;
+}
 
 Result<void> read_calibrations(const fs::path& root, Records& records) {
   const Result<std::vector<fs::path>> folders = folders_with(root, "calibration.json");

@@ -276,6 +276,7 @@ Result<RigLook> look_at_scan(const Session& session, const JobContext& context) 
 Result<RigLook> look_by_another(const RigLook& look, const fs::path& folder) {
   const Result<Calibration> calibration = read_calibration(folder);
   if (!calibration) return calibration.error();
+  if (calibration->id == look.calibration) return look;
   if (Result<void> fits = check_lights(*calibration, folder); !fits) return std::move(fits).error();
   RigLook another = look_by(*calibration, look.seen, reported_delta(folder));
   another.taken = look.taken;

@@ -47,7 +47,8 @@ Result<RigLook> look_at_scan(const Session& session, const JobContext& context);
 /// The session in a folder whose look was written last; empty: none has one.
 std::filesystem::path looked_at_last(const std::filesystem::path& sessions);
 
-/// The same evidence against a calibration in a folder. Errors of read_calibration(), and kBadData as above.
+/// The same evidence against a calibration in a folder; the look itself where it is by that. Errors of
+/// read_calibration(), and kBadData as above.
 Result<RigLook> look_by_another(const RigLook& look, const std::filesystem::path& calibration);
 /// By the one that the rig has now; the look itself where that cannot be asked, or where there is none
 /// (empty).

@@ -84,6 +84,18 @@ TEST_F(RigLook, WhereNothingOfTheRigIsInSightThatIsSaid) {
   EXPECT_THAT(look.says, HasSubstr("nothing of the rig is in sight"));
 }
 
+TEST_F(RigLook, WhatTheClothToldOfLedsIsSaidAsLongAsTheCalibrationIsThatOne) {
+  const fs::path first = root_ / "rig" / "first";
+  calibration::RigLook look;
+  look.calibration = read_calibration(first)->id;
+  look.state = RigPlace::kInPlace;
+  const ClothGains gains = {.leds = {{3, 0.976, 0.001}, {4, 1.004, 0.001}}};
+  look = calibration::with_cloth_gains(std::move(look), gains);
+  EXPECT_EQ(look.state, RigPlace::kDimmed);
+  EXPECT_THAT(look.says, testing::StartsWith("LED 3 weaker by 2.4 percent, which the cloth tells"));
+  EXPECT_EQ(calibration::look_by_now(look, first).says, look.says);
+}
+
 TEST_F(RigLook, TheWhiteOfPrintedCardsNeedsNoFileOfPatches) {
   simulator::Scene scene = checked_rig();
   std::erase_if(scene.targets,

@@ -133,6 +133,12 @@ TEST_F(PrintedTargets, OfARigIsKnownToItsSets) {
   sheet.part = TargetPart::kSheet;
   ASSERT_TRUE(print_for_rig(sheet, rig));
   EXPECT_TRUE(is_there(pdf_of_target(rig, "sheet")));
+  const fs::path targets = folder_.path() / "targets";
+  ASSERT_TRUE(print_for_rig(sheet, rig));
+  EXPECT_FALSE(is_there(targets / "sheet.before-1.toml")) << "it is the same";
+  ASSERT_TRUE(write_file(targets / "sheet.toml", "# measured by hand\n"));
+  ASSERT_TRUE(print_for_rig(sheet, rig));
+  EXPECT_EQ(read_text(targets / "sheet.before-1.toml").value(), "# measured by hand\n");
   EXPECT_THAT(newest_description(folder_.path() / "sets", SetPart::kMoved), HasSubstr("[[tag]]"));
   EXPECT_EQ(newest_description(folder_.path() / "sets", SetPart::kBoard), "");
 }
