@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-import path from 'node:path';
 import {build, defineConfig, type Plugin, type Rollup} from 'vite';
 
 const daemon = process.env.WEFT_DAEMON ?? 'http://127.0.0.1:8470';
 
-/** A screen's files are called as its folder: their names stand in what is loaded first. */
-function nameOf(file: string): string {
-  return path.parse(file).name.replace('_screen', '');
+/** What is shown together is packed together, which is an eighth smaller; what several of these need is in the first file. */
+const packs: readonly (readonly [name: string, holds: RegExp])[] = [
+  ['desk', /\/screens\/desk\//],
+  ['looks', /\/(gl|screens\/(viewer|material|finish))\/(?!sight|job_line)/],
+  ['rooms', /\/screens\/(sessions|batches|calibrate|doctor|tour|jobs\/job(s_screen|_row))/],
+  ['virtual', /\/virtual_panel/],
+];
+
+function fileOf(module: string): string {
+  return packs.find(([, holds]) => holds.test(module))?.[0] ?? 'index';
 }
 
 /** Draws a report, which carries it (report/page.h): one file with its style. */
@@ -39,9 +45,8 @@ export default defineConfig({
     terserOptions: {ecma: 2020, module: true, compress: {ecma: 2020, passes: 3, pure_getters: true, unsafe_arrows: true}},
     rollupOptions: {
       output: {
-        chunkFileNames: ({name}) => `assets/${nameOf(name)}-[hash].js`,
-        assetFileNames: ({names: [name = '']}) => `assets/${nameOf(name)}-[hash][extname]`,
-        experimentalMinChunkSize: 1000,  // bytes: asking for less takes longer than it does
+        chunkFileNames: 'assets/[name]-[hash].js',
+        manualChunks: fileOf,
       },
     },
   },
