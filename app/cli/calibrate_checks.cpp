@@ -176,11 +176,10 @@ Verb calibrate_accept_verb() {
 }
 
 Verb calibrate_check_verb() {
-  return {
-      "check",
-      "Accept or refuse a calibration on sheets it was not fitted to; with --session, see what moved. Exit "
-      "code 65 where it does not hold",
-      add_check};
+  return {"check",
+          "Accept or refuse a calibration on sheets it was not fitted to; with --session, a report of what "
+          "`weft rig check` tells. Exit code 65 where it does not hold",
+          add_check};
 }
 
 Verb calibrate_patches_verb() {
@@ -189,7 +188,10 @@ Verb calibrate_patches_verb() {
 }
 
 Verb calibrate_update_verb() {
-  return {"update", "Fit again what moved, the rest held by its prior", add_update};
+  return {
+      "update",
+      "What refresh fits, from photographs that were taken already: what moved, the rest held by its prior",
+      add_update};
 }
 
 Verb calibrate_history_verb() {

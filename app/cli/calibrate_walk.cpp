@@ -302,12 +302,11 @@ Run add_refresh(Options& options) {
 }  // namespace
 
 Verb calibrate_all_verb() {
-  return {"all", "From photographs to a proven calibration, told step by step: a new rig", add_all};
+  return {"all", "A new rig, step by step: from photographs to a proven calibration", add_all};
 }
 
 Verb calibrate_refresh_verb() {
-  return {"refresh", "What was knocked is seen, fitted again and proven: the least that a rig needs",
-          add_refresh};
+  return {"refresh", "A knocked rig, step by step: what moved is seen, fitted again and proven", add_refresh};
 }
 
 }  // namespace weft::app

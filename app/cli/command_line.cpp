@@ -131,18 +131,22 @@ int finish(const Run& run, const CommonArguments& common) {
   }
 }
 
-/// The verb that the first words say, and how many they are.
+/// The verb that the first words say, and how many they are; old names among them become those of today.
 struct SaidVerb {
   const Verb* verb = nullptr;
   int words = 0;
 };
 
-SaidVerb said_verb(const std::vector<Verb>& verbs, int argc, char** argv) {
+SaidVerb said_verb(std::vector<Verb>& verbs, int argc, char** argv) {
   SaidVerb said;
-  const std::vector<Verb>* among = &verbs;
+  std::vector<Verb>* among = &verbs;
   while (said.words + 1 < argc) {
-    const auto found = std::ranges::find(*among, std::string_view(argv[said.words + 1]), &Verb::name);
+    char*& word = argv[said.words + 1];
+    const auto found = std::ranges::find_if(*among, [word](const Verb& verb) {
+      return verb.name == word || (!verb.old_name.empty() && verb.old_name == word);
+    });
     if (found == among->end()) break;
+    word = found->name.data();
     said = {&*found, said.words + 1};
     among = &found->verbs;
   }
@@ -175,9 +179,9 @@ void add_verbs(CLI::App& parent, const std::vector<Verb>& verbs, CommonArguments
   }
 }
 
-int run_program(const Program& program, int argc, char** argv) {
+int run_program(Program program, int argc, char** argv) {
   if (std::vector<char*> words = words_for_help(argc, argv); !words.empty())
-    return run_program(program, static_cast<int>(words.size()), words.data());
+    return run_program(std::move(program), static_cast<int>(words.size()), words.data());
   const SaidVerb said = said_verb(program.verbs, argc, argv);
   if (said.verb != nullptr && !said.verb->program.empty())
     return finish(become(program_beside(said.verb->program), {argv + 1 + said.words, argv + argc}));

@@ -22,6 +22,6 @@ struct Program {
 
 /// Reads the command line and runs the verb it names. Whatever goes wrong becomes words on standard error
 /// and the exit code that is returned.
-int run_program(const Program& program, int argc, char** argv);
+int run_program(Program program, int argc, char** argv);
 
 }  // namespace weft::app

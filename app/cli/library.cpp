@@ -322,8 +322,10 @@ Run add_prune(Options& options) {
 Verb library_verb() {
   return {.name = "library",
           .help = "Find, tag and tidy the sessions of some folders",
-          .verbs = {{"find", "Sessions by words, tags, state, rig and date", add_find},
-                    {"list", "The same: all of them, the newest first", add_find},
+          .verbs = {{.name = "find",
+                     .help = "Sessions by words, tags, state, rig and date; without any, the newest first",
+                     .add = add_find,
+                     .old_name = "list"},
                     {"show", "All that is known of one session", add_show},
                     {"tag", "Change tags and what else people say of a cloth", add_tag},
                     {"undo", "Take the last change back, up to twenty", add_undo},

@@ -124,11 +124,13 @@ Run add_finish(Options& options) {
 }  // namespace
 
 Verb maps_verb() {
-  return {"maps", "Derive height, occlusion and other maps from a solve, finished by a recipe", add_maps};
+  return {"maps", "Height, occlusion and other maps of a solve, finished by a recipe", add_maps};
 }
 
 Verb finish_verb() {
-  return {"finish", "Flatten, straighten, crop, tile and repair the maps of a solve", add_finish};
+  return {"finish",
+          "A recipe alone (flatten, straighten, crop, tile, repair): albedo and normals, nothing derived",
+          add_finish};
 }
 
 }  // namespace weft::app

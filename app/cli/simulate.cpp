@@ -11,6 +11,7 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
 #include "core/base/files.h"
+#include "core/rig/exposure_words.h"
 #include "simulator/build_passes.h"
 #include "simulator/captures.h"
 #include "simulator/effects/bounds.h"
@@ -169,9 +170,9 @@ Result<int> run_session(const simulator::Scene& scene, const SimulateArguments& 
     return kDone;
   }
   if (arguments.explain) print_costs(report->passes);
-  print(fmt::format("{}: {} frames of {} x {} at {:.0f} us, rendered in {:.1f} s, written in {:.1f} s",
-                    session, report->frames, scene.camera.width, scene.camera.height, report->exposure_us,
-                    report->render_seconds, report->write_seconds));
+  print(fmt::format("{}: {} frames of {} x {} at {}, rendered in {:.1f} s, written in {:.1f} s", session,
+                    report->frames, scene.camera.width, scene.camera.height,
+                    exposure_words(report->exposure_us), report->render_seconds, report->write_seconds));
   return kDone;
 }
 

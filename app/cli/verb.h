@@ -31,6 +31,7 @@ struct Verb {
   std::vector<Verb> verbs = {};       ///< verbs of its own, one of which must be said
   std::string program = {};           ///< a program beside this one, which reads the rest and runs
   std::string group = {};             ///< the heading that the list of verbs has it under
+  std::string old_name = {};          ///< does the same and is shown nowhere
 };
 
 }  // namespace weft::app

@@ -19,6 +19,7 @@
 #include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
+#include "core/rig/exposure_words.h"
 #include "report/plot_svg.h"
 
 namespace weft::calibration {
@@ -200,10 +201,10 @@ report::Section balance_section(const ResponseMeasurement& m, const Calibration*
 }
 
 report::Section ratio_section(const ResponseMeasurement& m) {
-  report::Table table = {{"longer, us", "shorter, us", "measured", "by the times", "among LEDs"}, {}};
+  report::Table table = {{"longer", "shorter", "measured", "by the times", "among LEDs"}, {}};
   for (const MeasuredRatio& r : m.ratios) {
-    table.rows.push_back({fmt::format("{:.0f}", r.ratio.exposure_us),
-                          fmt::format("{:.0f}", r.ratio.to_exposure_us), fmt::format("{:.5f}", r.ratio.ratio),
+    table.rows.push_back({exposure_words(r.ratio.exposure_us), exposure_words(r.ratio.to_exposure_us),
+                          fmt::format("{:.5f}", r.ratio.ratio),
                           fmt::format("{:.5f}", r.ratio.exposure_us / r.ratio.to_exposure_us),
                           percent(r.scatter, 3)});
   }

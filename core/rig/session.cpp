@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/describe/field_json.h"
+#include "core/rig/exposure_words.h"
 
 namespace weft {
 namespace {
@@ -108,9 +109,9 @@ Result<void> check_shots(const Session& session, const std::string& where) {
     if (first == nullptr) first = &shot;
     if (shot.exposure_us != first->exposure_us || shot.iso != first->iso ||
         shot.f_number != first->f_number) {
-      return refuse(fmt::format("{} was taken at {} us, ISO {}, f/{} and {} at {} us, ISO {}, f/{}",
-                                first->file, first->exposure_us, first->iso, first->f_number, shot.file,
-                                shot.exposure_us, shot.iso, shot.f_number),
+      return refuse(fmt::format("{} was taken at {}, ISO {}, f/{} and {} at {}, ISO {}, f/{}", first->file,
+                                exposure_words(first->exposure_us), first->iso, first->f_number, shot.file,
+                                exposure_words(shot.exposure_us), shot.iso, shot.f_number),
                     "scan again with one exposure for all shots, or mark the odd one as bracket");
     }
   }

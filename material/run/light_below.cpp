@@ -14,6 +14,7 @@
 #include "capture/frames/raw_picture.h"
 #include "capture/frames/session_frames.h"
 #include "capture/raw/raw_info.h"
+#include "core/rig/exposure_words.h"
 #include "material/table_grid.h"
 
 namespace weft::material {
@@ -70,8 +71,9 @@ Result<void> check_alike(const Session& cloth, const Session& table) {
   if (a == nullptr) return unfit(cloth, kNoPhotograph);
   if (b == nullptr) return unfit(table, kNoPhotograph);
   if (a->exposure_us == b->exposure_us && a->iso == b->iso) return {};
-  return unfit(table, fmt::format("it was exposed for {} us at ISO {}, the cloth for {} us at ISO {}",
-                                  b->exposure_us, b->iso, a->exposure_us, a->iso));
+  return unfit(table,
+               fmt::format("it was exposed for {} at ISO {}, the cloth for {} at ISO {}",
+                           exposure_words(b->exposure_us), b->iso, exposure_words(a->exposure_us), a->iso));
 }
 
 // cloth / table by cell; infinite where a photograph is full, NaN where the table is dark.

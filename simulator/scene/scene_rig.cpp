@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rig/exposure_words.h"
 #include "simulator/camera/optics.h"
 #include "simulator/light/incidence.h"
 #include "simulator/spectra/observer.h"
@@ -189,8 +190,8 @@ Result<SceneRig> rig_of(const Scene& scene) {
       1e6 * kFullScaleShare / (camera.albedo_at_full * reading * camera.iso / 100)));
   if (rig.exposure_us < 1 || rig.exposure_us > kLongestExposure_us) {
     return refusal("no exposure fits the lights",
-                   fmt::format("{:.3g} us would be needed, 1 to {:.0e} can be had", rig.exposure_us,
-                               kLongestExposure_us),
+                   fmt::format("{} would be needed, {} to {} can be had", exposure_words(rig.exposure_us),
+                               exposure_words(1), exposure_words(kLongestExposure_us)),
                    "change lights.flux or camera.iso");
   }
   return rig;

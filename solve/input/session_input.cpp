@@ -11,6 +11,7 @@
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "core/image_io/linear_image.h"
+#include "core/rig/exposure_words.h"
 #include "core/rig/suits.h"
 #include "solve/session/left_out_shots.h"
 
@@ -100,17 +101,18 @@ void choose_more(SolvePlan& plan) {
     if (std::none_of(plan.lit.begin(), plan.lit.end(), [&](const Shot& s) { return s.led == shot.led; })) {
       leave_out(fmt::format("no lit shot of LED {} is solved", shot.led));
     } else if (shot.iso != lit.iso || (is_repeat && shot.exposure_us != lit.exposure_us)) {
-      leave_out(fmt::format("it was taken at {} us, ISO {}, the lit shots at {} us, ISO {}", shot.exposure_us,
-                            shot.iso, lit.exposure_us, lit.iso));
+      leave_out(fmt::format("it was taken at {}, ISO {}, the lit shots at {}, ISO {}",
+                            exposure_words(shot.exposure_us), shot.iso, exposure_words(lit.exposure_us),
+                            lit.iso));
     } else if (is_repeat) {
       plan.repeats.push_back(shot);
     } else if (!plan.raw) {
       leave_out("brackets are merged by the noise of raw frames, and these are developed");
     } else if (!response || !response->exposure_ratio(shot.exposure_us, lit.exposure_us)) {
       leave_out(
-          fmt::format("response.json has no measured ratio of {} us to {} us; measure it with weft "
+          fmt::format("response.json has no measured ratio of {} to {}; measure it with weft "
                       "calibrate response",
-                      shot.exposure_us, lit.exposure_us));
+                      exposure_words(shot.exposure_us), exposure_words(lit.exposure_us)));
     } else {
       plan.brackets.push_back(shot);
     }

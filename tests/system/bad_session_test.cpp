@@ -129,7 +129,7 @@ TEST_F(BadSession, TwoDarkShotsAreRefused) {
 TEST_F(BadSession, ShotsOfTwoExposuresAreRefused) {
   edit_session([](Json& s) { s["shots"][3]["exposure_us"] = 5000; });
   expect_solve_refused(65,
-                       {"session cannot be used", "session.json", "03_led04.dng", "5000 us", "one exposure"});
+                       {"session cannot be used", "session.json", "03_led04.dng", "at 5 ms", "one exposure"});
 }
 
 TEST_F(BadSession, AFrameOutsideTheSessionIsRefused) {

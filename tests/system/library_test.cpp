@@ -83,11 +83,13 @@ TEST_F(Library, ShowsWhatWouldSteerATerminalAsWords) {
   document["metadata"] = {{"tags", {"<b>", "=cmd", "../red"}}, {"notes", "a\nb"}};
   ASSERT_TRUE(write_json(session / "session.json", document));
 
-  const std::string listed = run_weft({"library", "list"}).output;
+  const std::string listed = run_weft({"library", "find"}).output;
   EXPECT_THAT(listed, AllOf(Not(HasSubstr("\x1b")), HasSubstr("<script>"), HasSubstr("2 of 2 sessions")));
   EXPECT_EQ(std::ranges::count(listed, '\n'), 3) << "a line a session: " << listed;
   EXPECT_LT(listed.size(), 500U) << "long texts are cut";
-  EXPECT_EQ(library({"list"}).json()["total"], 2) << "JSON although the name is no UTF-8";
+  EXPECT_EQ(library({"find"}).json()["total"], 2) << "JSON although the name is no UTF-8";
+  EXPECT_EQ(run_weft({"library", "list"}).output, listed) << "as find was also called";
+  EXPECT_THAT(run_weft({"library", "--help"}).output, Not(HasSubstr("list")));
 
   const Outcome solved = run_weft({"solve", session.string(), "--json"});
   ASSERT_EQ(solved.exit_code, 0) << solved.error;
