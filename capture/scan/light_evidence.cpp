@@ -282,7 +282,7 @@ ShotVerdict ScanEvidence::judge_dark(const DueShot& shot, const std::vector<doub
   if (bright > kDarkWarns) {
     verdict.doubt = LightFinding::kRoomLight;
     verdict.warnings.push_back(
-        fmt::format("the dark shot has {:.2g} of full scale: darken the room for cleaner maps", bright));
+        fmt::format("the dark shot has {:.2g} of full scale; darken the room for cleaner maps", bright));
   }
   return verdict;
 }
@@ -386,7 +386,7 @@ ShotVerdict ScanEvidence::judge_lit(const DueShot& shot, const std::vector<doubl
     ShotVerdict verdict;
     verdict.warnings.push_back(
         fmt::format("LED {}: {:.0f} percent of the frame have full photosites, so that nothing tells whether "
-                    "it was the right LED: scan with a shorter --exposure",
+                    "it was the right LED; scan again with a shorter exposure",
                     shot.led, 100 * full_share(light)));
     return verdict;
   }
@@ -397,7 +397,7 @@ ShotVerdict ScanEvidence::judge_lit(const DueShot& shot, const std::vector<doubl
   if (verdict.finding == LightFinding::kAgrees && level < kDimWarns) {
     verdict.doubt = LightFinding::kDim;
     verdict.warnings.push_back(
-        fmt::format("LED {} gives {:.0f} percent of the light that the others let expect: look at it before "
+        fmt::format("LED {} gives {:.0f} percent of the light that the others let expect; look at it before "
                     "the next scan",
                     shot.led, 100 * level));
   }

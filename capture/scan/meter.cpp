@@ -127,7 +127,7 @@ class Meter {
                  fmt::format("at {} its brightest photosites come to {:.3f} of white",
                              exposure_words(exposure_us_), seen.bright),
                  is_full ? "lower the LEDs' current or close the aperture and calibrate again"
-                         : "check that the LED lights and the lens is open, or scan with --exposure"};
+                         : "check that the LED lights and the lens is open, or say an exposure"};
   }
 
   /// Speaks where one exposure uses the range poorly: highlights that a few photosites see hold it down.
@@ -137,7 +137,7 @@ class Meter {
     const double times = std::min(std::round(kMeteredTo / bright), kLongestBracket);
     metering.warnings.push_back(
         fmt::format("highlights hold the exposure at {}, where 99.9 percent of the cloth stay below {:.0f} "
-                    "percent of the range; scan with --bracket {:.0f} for the rest",
+                    "percent of the range; scan with a bracket of {:.0f} times for the rest",
                     exposure_words(metering.exposure_us), 100 * bright, times));
   }
 

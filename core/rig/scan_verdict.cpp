@@ -2,7 +2,12 @@
 #include "core/rig/scan_verdict.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "core/rig/exposed.h"
@@ -30,14 +35,52 @@ std::vector<std::string> warnings_of(const Shot& shot) {
   return warnings;
 }
 
+namespace {
+
+/// What shots were warned of alike.
+struct SharedWarning {
+  std::string first;        ///< as its first shot was warned of it
+  std::set<int> also = {};  ///< LEDs of the others
+};
+
+std::string without_numbers(const std::string& warning) {
+  std::string words;
+  std::ranges::copy_if(warning, std::back_inserter(words),
+                       [](char c) { return (c < '0' || c > '9') && c != '.'; });
+  return words;
+}
+
+std::vector<SharedWarning> shared_warnings(const Session& session) {
+  std::vector<SharedWarning> causes;
+  std::map<std::string, std::size_t> places;
+  for (const Shot& shot : session.shots) {
+    if (shot.superseded_by) continue;
+    for (const std::string& warning : warnings_of(shot)) {
+      const auto [place, is_new] = places.try_emplace(without_numbers(warning), causes.size());
+      if (is_new) {
+        causes.push_back({warning});
+      } else if (shot.led > 0) {
+        causes[place->second].also.insert(shot.led);
+      }
+    }
+  }
+  return causes;
+}
+
+std::string words_of_cause(const SharedWarning& cause) {
+  if (cause.also.empty()) return cause.first;
+  const std::size_t at = std::min(cause.first.find("; "), cause.first.size());
+  return fmt::format("{}, and LED{} {} likewise{}", cause.first.substr(0, at),
+                     cause.also.size() > 1 ? "s" : "", fmt::join(cause.also, ", "), cause.first.substr(at));
+}
+
+}  // namespace
+
 std::vector<std::string> warnings_of(const Session& session) {
   std::vector<std::string> warnings;
   if (std::string exposure = exposure_warning(session); !exposure.empty())
     warnings.push_back(std::move(exposure));
-  for (const Shot& shot : session.shots) {
-    if (shot.superseded_by) continue;
-    for (std::string& warning : warnings_of(shot)) warnings.push_back(std::move(warning));
-  }
+  for (const SharedWarning& cause : shared_warnings(session)) warnings.push_back(words_of_cause(cause));
   return warnings;
 }
 

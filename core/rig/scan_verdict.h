@@ -34,7 +34,7 @@ std::string words_of(const ScanVerdict& verdict);
 /// What the scan warned of at this shot.
 std::vector<std::string> warnings_of(const Shot& shot);
 /// What its exposure is to be warned of (core/rig/exposed.h), then what the scan warned of at shots that
-/// count.
+/// count. Of those that differ in their numbers alone the first is told, with the LEDs of the others.
 std::vector<std::string> warnings_of(const Session& session);
 
 /// "All 10 LEDs are over; scan again" in its two parts.
