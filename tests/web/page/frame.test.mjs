@@ -56,9 +56,9 @@ test('a screen that is fetched later than the next one does not take its place',
   const visitor = await visit(browser, rig);
   const page = await enter(visitor, 'doctor');
   await page.getByRole('heading', {level: 1, name: 'Doctor'}).waitFor();
-  const late = await visitor.hold(/\/assets\/calibrate-[^/]*\.js$/);
+  const late = await visitor.hold(/\/assets\/looks-[^/]*\.js$/);
   const tabs = page.getByRole('navigation');
-  await tabs.getByRole('link', {name: 'Calibrate'}).click();
+  await tabs.getByRole('link', {name: 'Material'}).click();
   await late.asked;
   await tabs.getByRole('link', {name: 'Library'}).click();
   await page.getByRole('heading', {level: 1, name: 'Library'}).waitFor();
@@ -67,15 +67,23 @@ test('a screen that is fetched later than the next one does not take its place',
   await visitor.leave();
 });
 
+/** A telephone, a window at 200 percent, a laptop and a wall. */
+const windows = [[390, 844], [640, 400], [1280, 800], [3840, 2160]];
+
 for (const screen of screens) {
-  test(`${screen} opens by its address, passes axe and is dark`, async () => {
+  test(`${screen} opens by its address, passes axe in windows of all widths, and is dark`, async () => {
     const visitor = await visit(browser, rig);
     const page = await enter(visitor, screen);
     await page.getByRole('heading', {level: 1}).waitFor({state: 'attached'});
-    assert.deepEqual(await violations(page), []);
+    for (const [width, height] of windows) {
+      await page.setViewportSize({width, height});
+      assert.deepEqual(await violations(page), [], `${width} pixels wide`);
+      assert.equal(await page.evaluate(() => Math.max(document.documentElement.scrollWidth, document.querySelector('main').scrollWidth)), width, 'it is to be moved sideways');
+      await picture(page, `${screen}-empty-${width}`);
+    }
+    await page.setViewportSize({width: 1280, height: 800});
     const luminance = luminanceOf(await pixelsOf(page));
     assert.ok(luminance < 0.015, `mean luminance ${luminance}`);
-    await picture(page, `${screen}-empty`);
     await visitor.leave();
   });
 }
