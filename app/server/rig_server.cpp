@@ -45,6 +45,7 @@ struct RigServer::State {
         log(lock.folder() / "log", std::move(say)),
         pictures(lock.folder() / "pictures"),
         views(lock.folder() / "views"),
+        swatches(lock.folder() / "swatches"),
         watch(rig, [this] { keeper.tell_status(); }),
         controls([this](const std::string& name) { tell_controls(name); }),
         screens(rig),
@@ -117,7 +118,7 @@ struct RigServer::State {
     keeper.on_scanned([this, looks = wish.looks, previews = wish.previews](
                           const capture::ScanRequest& request) { look_at(request, looks, previews); });
     parts.emplace(RigParts{rig, lock.folder(), keeper, pictures, attendance, screens, scans, sets, framing,
-                           watch, controls, *jobs, *library, views, pixels, guard});
+                           watch, controls, *jobs, *library, views, swatches, pixels, guard});
     return {};
   }
 
@@ -127,6 +128,7 @@ struct RigServer::State {
   Logbook log;
   FramePictures pictures;
   ViewStore views;
+  Swatches swatches;
   PixelTables pixels;
   RigWatch watch;  // its jobs tell it of what they saw until they end
   std::unique_ptr<LibraryService> library;

@@ -17,6 +17,7 @@
 #include "app/server/rig/rig_watch.h"
 #include "app/server/rig/set_keeper.h"
 #include "app/server/view/pixel_tables.h"
+#include "app/server/view/swatch.h"
 #include "app/server/view/view_store.h"
 #include "capture/rig.h"
 #include "core/base/json_document.h"
@@ -39,6 +40,7 @@ struct RigParts {
   JobQueue& jobs;
   LibraryService& library;
   ViewStore& views;
+  Swatches& swatches;
   PixelTables& pixels;
   GuardRules guard;  ///< who may come in
 };

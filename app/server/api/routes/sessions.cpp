@@ -44,8 +44,7 @@ Json to_json(const Shot& shot, const std::string& name) {
 /// The cloth relit by its current solve, else the first lit photograph: a path that names its bytes.
 Json thumbnail_of(const library::Entry& entry) {
   const std::string path = "/api/v1/sessions/" + entry.name;
-  if (!entry.current_solve.empty())
-    return fmt::format("{}/solves/{}/tiles/relit/top/0_0.jpg", path, entry.current_solve);
+  if (!entry.current_solve.empty()) return fmt::format("{}/solves/{}/swatch.jpg", path, entry.current_solve);
   if (entry.lit_sha256.empty()) return nullptr;
   return fmt::format("{}/frames/{}/thumbnail?sha256={}", path, entry.lit_shot, entry.lit_sha256);
 }

@@ -126,6 +126,24 @@ Result<Reply> tile(const RigParts& parts, const Viewed& viewed, const Call& call
   return reply;
 }
 
+/// The cloth as the library shows it.
+Result<Reply> swatch(const RigParts& parts, const Viewed& viewed, const Call&) {
+  const auto draw = [&]() -> Result<Image<float>> {
+    const Result<Rect> part = swatch_part_of(parts, viewed);
+    if (!part) return part.error();
+    const Result<std::shared_ptr<Pyramid>> normal = pyramid_of(parts, viewed, "normal");
+    if (!normal) return normal.error();
+    const Result<std::shared_ptr<Pyramid>> albedo = pyramid_of(parts, viewed, "albedo");
+    if (!albedo) return albedo.error();
+    return swatch_picture(**normal, **albedo, *part, has_relative_albedo(viewed));
+  };
+  Result<std::string> bytes = parts.swatches.find_or(viewed.content, draw);
+  if (!bytes) return std::move(bytes).error();
+  Reply reply = {200, "image/jpeg", std::move(*bytes)};
+  if (viewed.id != kTruth) reply.keeping = Keeping::kForever;
+  return reply;
+}
+
 /// The pixel that x and y of the query name.
 Result<Rect> pixel_in(const Call& call, Size size) {
   const Result<int> x = whole_number_of(call, "x", 0, size.width - 1);
@@ -218,8 +236,8 @@ std::vector<Route> view_routes(const RigParts& parts, const std::string& one, Fi
   const auto cut = [find](const RigParts& all, const Viewed& viewed, const Call& call) {
     return tile(all, viewed, call, find);
   };
-  return {asked("/tiles/{layer}/{level}/{tile}", cut), asked("/pixel", pixel), asked("/region", region),
-          asked("/line", line)};
+  return {asked("/tiles/{layer}/{level}/{tile}", cut), asked("/swatch.jpg", swatch), asked("/pixel", pixel),
+          asked("/region", region), asked("/line", line)};
 }
 
 }  // namespace weft::app

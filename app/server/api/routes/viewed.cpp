@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -27,6 +28,8 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kNowhere = 1e6;  // pixels, beyond any picture
 
 Error no_such_maps(const char* what, const std::string& id, const std::string& why) {
   return {ErrorKind::kNoInput, what, id.substr(0, 40), why, "see the list of those that the session has"};
@@ -85,13 +88,11 @@ Json common_json(const Viewed& viewed) {
   } else if (viewed.solve) {
     for (const Verdict& verdict : viewed.solve->warnings) warnings.push_back(verdict.name);
   }
-  const bool is_absolute = viewed.solve ? viewed.solve->albedo_scale == AlbedoScale::kAbsolute
-                                        : viewed.is_build || !viewed.set.has_value();
   Json document = {{"id", viewed.id},
                    {"method", viewed.solve ? viewed.solve->method : kTruth},
                    {"width", viewed.layers.size.width},
                    {"height", viewed.layers.size.height},
-                   {"albedo_scale", is_absolute ? "absolute" : "relative"},
+                   {"albedo_scale", has_relative_albedo(viewed) ? "relative" : "absolute"},
                    {"warnings", std::move(warnings)}};
   if (viewed.id == kTruth) return document;
   document["created"] = written_at(viewed.folder / (viewed.is_build ? material::kMaterialProduct.document
@@ -133,18 +134,57 @@ Json stale_of(const Viewed& viewed) {
   return is_outdated ? Json::array({solve->outdated}) : Json::array();
 }
 
-// At the middle of the frame; null where nobody knows.
-Json mm_per_pixel_of(const Viewed& viewed) {
-  if (viewed.set && viewed.mm_per_pixel <= 0) return nullptr;
+// What of the table lies in the picture, a quarter of its side around each tag too: it needs a white margin.
+std::vector<Rect> beside_cloth(const Calibration& calibration, int pixels_each) {
+  std::vector<Rect> all;
+  const auto add = [&](const std::vector<std::array<double, 2>>& corners, double margin) {
+    double left = kNowhere, top = kNowhere, right = -kNowhere, bottom = -kNowhere;
+    for (const auto& [x, y] : corners) {
+      left = std::min(left, x), right = std::max(right, x);
+      top = std::min(top, y), bottom = std::max(bottom, y);
+    }
+    const double wide = margin * (right - left), high = margin * (bottom - top);
+    const auto whole = [&](double pixel) {
+      return static_cast<int>(std::clamp(pixel, -kNowhere, kNowhere) / pixels_each);
+    };
+    all.push_back({whole(left - wide), whole(top - high), whole(right + wide), whole(bottom + high)});
+  };
+  for (const Fiducial& tag : calibration.fiducials) {
+    std::vector<std::array<double, 2>> corners;
+    for (const Vec3& corner : tag.corners_mm) {
+      const Vec3 at = project(*calibration.camera, corner);
+      corners.push_back({at.x, at.y});
+    }
+    add(corners, 0.25);
+  }
+  for (const WhitePatch& patch : calibration.patches) add(patch.polygon_px, 0);
+  return all;
+}
+
+}  // namespace
+
+double mm_per_pixel_of(const Viewed& viewed) {
+  if (viewed.set && viewed.mm_per_pixel <= 0) return 0;
   const Result<Lying> lying = lying_of(viewed);
-  if (!lying) return nullptr;
+  if (!lying) return 0;
   const Ground ground = lying->ground(viewed);
   const double x = 0.5 * viewed.layers.size.width, y = 0.5 * viewed.layers.size.height;
   const Vec3 a = place_on(ground, x, y), b = place_on(ground, x + 1, y);
   return std::hypot(b.x - a.x, b.y - a.y);
 }
 
-}  // namespace
+Result<Rect> swatch_part_of(const RigParts& parts, const Viewed& viewed) {
+  SeenCloth cloth = {.size = viewed.layers.size, .mm_per_pixel = mm_per_pixel_of(viewed)};
+  const Result<Lying> lying = lying_of(viewed);
+  if (lying && lying->calibration)
+    cloth.beside = beside_cloth(*lying->calibration, lying->ground(viewed).pixels_each);
+  if (viewed.layers.find("sigma") == nullptr) return swatch_part(cloth, {});
+  const Result<std::shared_ptr<Pyramid>> sigma = pyramid_of(parts, viewed, "sigma");
+  if (!sigma) return sigma.error();
+  const Result<Image<float>> samples = samples_of(**sigma);
+  if (!samples) return samples.error();
+  return swatch_part(cloth, samples->plane());
+}
 
 Result<Viewed> find_solve_maps(const RigParts& parts, const std::string& name, const std::string& id) {
   Result<Session> session = parts.library.session(name);
@@ -217,10 +257,13 @@ Result<std::shared_ptr<Pyramid>> pyramid_of(const RigParts& parts, const Viewed&
   return parts.views.layer(viewed.folder, viewed.content, *layer);
 }
 
+bool has_relative_albedo(const Viewed& viewed) {
+  if (viewed.solve) return viewed.solve->albedo_scale == AlbedoScale::kRelative;
+  return viewed.set && !viewed.is_build;
+}
+
 Result<double> gain_of(const RigParts& parts, const Viewed& viewed) {
-  const bool is_truth = !viewed.solve && !viewed.set;
-  if (is_truth || viewed.is_build || (viewed.solve && viewed.solve->albedo_scale == AlbedoScale::kAbsolute))
-    return 1.0;
+  if (!has_relative_albedo(viewed)) return 1.0;
   const Result<std::shared_ptr<Pyramid>> albedo = pyramid_of(parts, viewed, "albedo");
   if (!albedo) return albedo.error();
   const int top = (*albedo)->levels() - 1;
@@ -275,15 +318,19 @@ Result<Json> viewed_json(const RigParts& parts, const Viewed& viewed) {
   for (int side = std::max(size.width, size.height); side > kTileSide; side = (side + 1) / 2) ++levels;
   const Result<double> gain = gain_of(parts, viewed);
   if (!gain) return gain.error();
+  const Result<Rect> swatch = swatch_part_of(parts, viewed);
+  if (!swatch) return swatch.error();
   Json document = common_json(viewed);
   document["tile"] = kTileSide;
   document["levels"] = levels;
   document["layers"] = layers_json(viewed.layers);
   document["display_gain"] = *gain;
   document["leds"] = leds_of(viewed);
-  document["mm_per_pixel"] = mm_per_pixel_of(viewed);
+  const double mm_per_pixel = mm_per_pixel_of(viewed);
+  document["mm_per_pixel"] = mm_per_pixel > 0 ? Json(mm_per_pixel) : Json();
   document["stale"] = stale_of(viewed);
   document["cloth_height_mm"] = viewed.session.cloth_height_mm;
+  document["swatch"] = {{"x", swatch->x0}, {"y", swatch->y0}, {"side", swatch->width()}};
   if (viewed.set) document["set"] = *viewed.set;
   return document;
 }

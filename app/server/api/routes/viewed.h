@@ -54,6 +54,8 @@ Result<Viewed> find_built_maps(const RigParts& parts, const std::string& materia
 Result<std::shared_ptr<Pyramid>> pyramid_of(const RigParts& parts, const Viewed& viewed,
                                             const std::string& layer);
 
+/// Whether nobody knows how bright they are.
+bool has_relative_albedo(const Viewed& viewed);
 /// What their albedo is multiplied by to be looked at: 1 where it has an absolute scale.
 Result<double> gain_of(const RigParts& parts, const Viewed& viewed);
 
@@ -65,6 +67,13 @@ struct Lying {
 };
 /// kBadData where nobody calibrated the camera.
 Result<Lying> lying_of(const Viewed& viewed);
+
+/// At the middle of the frame; 0 where nobody knows.
+double mm_per_pixel_of(const Viewed& viewed);
+
+/// The square of them that stands for the cloth (app/server/view/swatch.h). Errors of Pyramid::open() and
+/// read().
+Result<Rect> swatch_part_of(const RigParts& parts, const Viewed& viewed);
 
 /// The names of what a list of a document has: its maps, its verdicts.
 Json names_in(const Json& document, const char* key);

@@ -3445,6 +3445,70 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sessions/{name}/maps/{id}/swatch.jpg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The cloth as the library shows it: a square without tags, at most 60 mm and 320 pixels, lit from the upper left */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                    /** @description Id of the set of maps */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "image/jpeg": string;
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sessions/{name}/maps/{id}/pixel": {
         parameters: {
             query?: never;
@@ -3999,6 +4063,70 @@ export interface paths {
                     content: {
                         "application/octet-stream": string;
                         "image/png": string;
+                        "image/jpeg": string;
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/materials/{name}/builds/{id}/swatch.jpg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The cloth as the library shows it: a square without tags, at most 60 mm and 320 pixels, lit from the upper left */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Material, as GET materials has its key */
+                    name: string;
+                    /** @description Id of the build */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
                         "image/jpeg": string;
                     };
                 };
@@ -5251,6 +5379,70 @@ export interface paths {
                     content: {
                         "application/octet-stream": string;
                         "image/png": string;
+                        "image/jpeg": string;
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{name}/solves/{solve}/swatch.jpg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The cloth as the library shows it: a square without tags, at most 60 mm and 320 pixels, lit from the upper left */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                    /** @description Id of the solve; truth for that of a simulated session */
+                    solve: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
                         "image/jpeg": string;
                     };
                 };
@@ -6709,6 +6901,11 @@ export interface components {
             created?: string;
             /** @description Of its files */
             bytes?: number;
+            swatch: {
+                x: number;
+                y: number;
+                side: number;
+            };
             /** @description What an albedo of relative scale is multiplied by to be looked at */
             display_gain: number;
             /** @description Where the LEDs were, in the rig frame; empty where nobody knows */

@@ -83,7 +83,7 @@ TEST_F(ServedMaps, HaveAThumbnailOfTheClothRelitThatIsKeptForEver) {
   const Json listed = get("sessions").json();
   ASSERT_EQ(listed["total"], 1) << listed.dump();
   const std::string path = listed["sessions"][0]["thumbnail"];
-  EXPECT_EQ(path, "/api/v1/" + solve() + "/tiles/relit/top/0_0.jpg");
+  EXPECT_EQ(path, "/api/v1/" + solve() + "/swatch.jpg");
   const Answer picture = ask(server_->port(), "GET", path);
   ASSERT_EQ(picture.status, 200) << picture.body;
   EXPECT_THAT(picture.head, HasSubstr("image/jpeg"));

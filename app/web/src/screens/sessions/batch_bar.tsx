@@ -11,6 +11,7 @@ import {counted} from '../../ui/say';
 import {planChosen} from '../batches/plan_chosen';
 import {queueJob} from '../jobs/jobs';
 import {change} from './edits';
+import {compare} from './session_tile';
 import {tagsIn, withTags, withoutTag, type Summary} from './metadata';
 import {tags} from './shelf';
 
@@ -57,6 +58,7 @@ export function BatchBar({chosen, onAll, onNone, onChanged}: BatchBarProps) {
     setQueued(await each((session) => queueJob(request(session.name))));
   };
 
+  const [one, other] = chosen;
   const plan = () => planChosen(chosen.map(({name}) => name));
 
   return (
@@ -65,6 +67,7 @@ export function BatchBar({chosen, onAll, onNone, onChanged}: BatchBarProps) {
         <strong>{counted(chosen.length, 'session')} chosen</strong>
         <Button kind="quiet" onClick={onAll}>All</Button>
         <Button kind="quiet" onClick={onNone} keyHint="Escape">None</Button>
+        {one && other && chosen.length === 2 && <Button onClick={() => compare(one, other)}>Compare</Button>}
       </div>
       <div class="row ends">
         <Field label="Tags" value={typed} onInput={type} onEnter={addTags} list={tags.value} placeholder="autumn, red" />

@@ -15,11 +15,13 @@ import {TortureScene} from '../jobs/torture';
 import {BatchBar} from './batch_bar';
 import {addressOf, filtersIn, isNarrowed, type Filters, noFilters, states} from './filters';
 import {LastWord} from './last_word';
-import {SessionRow} from './session_row';
+import {SessionTile} from './session_tile';
 import {all, extended, nothing, toggled} from './selection';
 import {askMore, askTags, complaint, look, shelf, tags} from './shelf';
 
-const row_px = 72;
+/** A tile is at least as wide, and higher by its words. */
+const least_px = 175;
+const words_px = 72;
 /** Sessions are asked for before they come into view. */
 const rowsAhead = 100;
 
@@ -47,8 +49,10 @@ export function Library() {
   useKeys('sessions', [
     {key: 'Escape', does: 'choose none', run: () => select(nothing)},
     {key: 'Ctrl+a', does: 'choose all', run: () => select(all(names))},
-    {key: 'ArrowDown', does: 'next session', run: () => step(1)},
-    {key: 'ArrowUp', does: 'session before', run: () => step(-1)},
+    {key: 'ArrowRight', does: 'next session', run: () => step(1, false)},
+    {key: 'ArrowLeft', does: 'session before', run: () => step(-1, false)},
+    {key: 'ArrowDown', does: 'session below', run: () => step(1, true)},
+    {key: 'ArrowUp', does: 'session above', run: () => step(-1, true)},
   ]);
 
   const choose = (name: string, withRange: boolean) =>
@@ -63,20 +67,22 @@ export function Library() {
         <LastWord onStep={again} />
       </div>
       <FilterBar filters={filters} onChange={(changed: Filters) => amend(addressOf(changed))} />
-      <Complaint error={complaint.value} />
-      {isKnown && total === 0 && <Nothing isNarrowed={isNarrowed(filters)} />}
-      <VirtualList label="Sessions" count={total} row_px={row_px} keyOf={(index) => names[index] ?? index}
-        onRange={(range) => setEnd(range.end)} render={(index) => {
-          const session = sessions[index];
-          if (!session) return <div class="session dim">...</div>;
-          return (
-            <SessionRow session={session} isChosen={selection.names.has(session.name)}
-              onChoose={(withRange) => choose(session.name, withRange)} />
-          );
-        }} />
-      {chosen.length > 0 && (
-        <BatchBar chosen={chosen} onAll={() => select(all(names))} onNone={() => select(nothing)} onChanged={again} />
-      )}
+      <div class="wall">
+        <Complaint error={complaint.value} />
+        {isKnown && total === 0 && <Nothing isNarrowed={isNarrowed(filters)} />}
+        <VirtualList label="Sessions" count={total} least_px={least_px} more_px={words_px} keyOf={(index) => names[index] ?? index}
+          onRange={(range) => setEnd(range.end)} render={(index) => {
+            const session = sessions[index];
+            if (!session) return <div class="session dim">...</div>;
+            return (
+              <SessionTile session={session} isChosen={selection.names.has(session.name)}
+                onChoose={(withRange) => choose(session.name, withRange)} />
+            );
+          }} />
+        {chosen.length > 0 && (
+          <BatchBar chosen={chosen} onAll={() => select(all(names))} onNone={() => select(nothing)} onChanged={again} />
+        )}
+      </div>
     </div>
   );
 }
@@ -123,10 +129,11 @@ function Nothing({isNarrowed: isSearch}: {isNarrowed: boolean}) {
   );
 }
 
-/** The focus goes to the row before or after the one that has it. */
-function step(by: 1 | -1): void {
-  const links = [...document.querySelectorAll<HTMLElement>('.library .session .what a')];
-  const row = document.activeElement?.closest('.session');
-  const at = links.findIndex((link) => row?.contains(link));
-  links[Math.max(0, Math.min(at + by, links.length - 1))]?.focus();
+/** The focus goes to the tile before, after, above or below the one that has it. */
+function step(by: 1 | -1, isRow: boolean): void {
+  const links = [...document.querySelectorAll<HTMLElement>('.session a')];
+  const top = (link?: HTMLElement) => link?.getBoundingClientRect().top;
+  const columns = links.findIndex((link) => top(link) !== top(links[0]));
+  const at = links.findIndex((link) => link.parentElement?.contains(document.activeElement));
+  links[Math.max(0, Math.min(at + by * (isRow && at >= 0 && columns > 0 ? columns : 1), links.length - 1))]?.focus();
 }

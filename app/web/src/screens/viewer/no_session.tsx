@@ -34,7 +34,7 @@ export function NoSession() {
         {sessions?.map(({name, fabric, current_solve, thumbnail}) => (
           <li key={name}>
             <a href={addressOfViewer({session: name, solve: current_solve})}>
-              <img alt="" width={192} height={128} loading="lazy" src={thumbnail ?? ''} />
+              <img alt="" width={192} height={192} loading="lazy" src={thumbnail ?? ''} />
               <span>{fabric || name}</span>
               <span class="dim">{name}</span>
             </a>
