@@ -326,6 +326,7 @@ class HttpServer::Parser : public httplib::Server {
         return segments_in(each.path, path).has_value();
       };
       response.status = route == nullptr && std::ranges::any_of(routes_, is_path) ? 405 : 404;
+      if (response.status == 404 && is_by_hand(request)) return answer_by_page(request, response);
       return explain(request, response);
     }
     Call call = call_of(request);
@@ -335,6 +336,24 @@ class HttpServer::Parser : public httplib::Server {
     const Result<Reply> reply = route->handle(call);
     if (reply) return answer(*reply, route->open ? "public" : "private", request, response);
     answer(reply.error(), http_status_of(reply.error().kind), request, response);
+  }
+
+  /// An address that somebody typed or followed, as far as a browser tells.
+  static bool is_by_hand(const httplib::Request& request) {
+    return request.method == "GET" && !request.path.starts_with("/api/") &&
+           request.get_header_value("Accept").find("text/html") != std::string::npos;
+  }
+
+  /// The page says itself that it has none of this address.
+  void answer_by_page(const httplib::Request& request, httplib::Response& response) {
+    const Route* page = route_of("GET", "/");
+    Call call = call_of(request);
+    call.takes_gzip = false;
+    Result<Reply> reply = page == nullptr ? Error{} : page->handle(call);
+    if (!reply) return explain(request, response);
+    reply->status = 404;
+    reply->tag.clear();  // what has none goes out with its body, which cpp-httplib asks of an error
+    answer(*reply, "public", request, response);
   }
 
   /// An error of routing or of cpp-httplib.

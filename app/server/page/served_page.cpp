@@ -37,8 +37,8 @@ const char* type_of(std::string_view path) {
 }
 
 // The first words of the addresses that the page itself takes apart.
-constexpr std::array<const char*, 9> kScreens = {"desk",    "sessions", "viewer", "material", "calibrate",
-                                                 "batches", "jobs",     "doctor", "tour"};
+constexpr std::array<const char*, 10> kScreens = {"desk",      "library", "sessions", "viewer", "material",
+                                                  "calibrate", "batches", "jobs",     "doctor", "tour"};
 constexpr std::array<const char*, 2> kSetsOfMaps = {"/viewer/{session}/maps/{id}",
                                                     "/material/{of}/{is}/{id}"};
 constexpr const char* kIndex = "/index.html";

@@ -67,7 +67,7 @@ TEST_F(Page, IsThereAtTheAddressOfEachScreen) {
   const std::string page = get("/").body;
   for (const char* path : {"/desk", "/sessions/2026-11-21_wool.2_001", "/viewer/a%20b/d043ba17c8aaa1fc",
                            "/viewer/a/maps/d043ba17", "/material/a/maps/d043ba17", "/calibrate", "/batches",
-                           "/batches/0001", "/jobs", "/doctor", "/tour"}) {
+                           "/batches/0001", "/jobs", "/doctor", "/tour", "/library"}) {
     EXPECT_EQ(get(path).body, page) << path;
   }
   for (const char* path : {"/nothing", "/desks", "/viewer/a/b/c", "/api/v1/desk", "/api", "/desk.js"}) {
@@ -75,6 +75,20 @@ TEST_F(Page, IsThereAtTheAddressOfEachScreen) {
                                  testing::Field(&Answer::head, HasSubstr("application/json"))))
         << path;
   }
+}
+
+// What a browser asks for where somebody typed an address, and nothing that a program asks for.
+TEST_F(Page, AnswersAnUnknownAddressToWhoReadsIt) {
+  const HeaderLines by_hand = {{"Accept", "text/html,application/xhtml+xml,*/*;q=0.8"}};
+  const std::string page = get("/").body;
+  for (const char* path : {"/nothing", "/viewer/a/b/c", "/a/b/c/d/e"}) {
+    const Answer answer = get(path, by_hand);
+    EXPECT_EQ(answer.status, 404) << path;
+    EXPECT_EQ(answer.body, page) << path;
+    EXPECT_THAT(answer.head, HasSubstr("default-src 'none'")) << path;
+  }
+  EXPECT_THAT(get("/api/v1/nothing", by_hand).head, HasSubstr("application/json"));
+  EXPECT_THAT(get("/nothing").head, HasSubstr("application/json"));
 }
 
 TEST_F(Page, NamesNoFileThatIsNotThere) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library: a thousand sessions, tags across tabs, edits that outlive the daemon, and one that cannot be read.
+// The library: a wall of a thousand swatches, tags across tabs, edits that outlive the daemon, and one that cannot be read.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -11,7 +11,7 @@ import {setUp, takeDown} from './support/setting.mjs';
 const many = 1000;
 /** Scanned, torn, of a newer weft. */
 const others = 3;
-const mostRows = 60;
+const mostTiles = 60;
 let browser, rig, scanned;
 before(async () => {
   ({browser, rig} = await setUp({megapixels: 0.1}));
@@ -50,7 +50,7 @@ function rowOf(page, name) {
   return page.locator('.session').filter({hasText: name});
 }
 
-test('of a thousand sessions at most sixty rows exist, however one scrolls', async () => {
+test('of a thousand sessions at most sixty tiles exist, however one scrolls', async () => {
   const visitor = await visit(browser, rig);
   const page = await enter(visitor);
   await page.getByText(`${many + others} sessions`).waitFor();
@@ -62,11 +62,17 @@ test('of a thousand sessions at most sixty rows exist, however one scrolls', asy
   for (const share of [0.1, 0.35, 0.7, 1]) {
     await list.evaluate((box, part) => box.scrollTo(0, part * box.scrollHeight), share);
     await page.waitForFunction(isFilled);
-    const rows = await page.locator('.virtual li').count();
-    assert.ok(rows <= mostRows, `${rows} rows at ${share}`);
+    const tiles = await page.locator('.virtual li').count();
+    assert.ok(tiles <= mostTiles, `${tiles} tiles at ${share}`);
   }
-  const last = page.locator(`.virtual li[aria-posinset="${many + others}"] .what a`);
+  const last = page.locator(`.virtual li[aria-posinset="${many + others}"] a`);
   await last.waitFor();
+  const [first, second, below] = await page.locator('.virtual li').evaluateAll((tiles) => {
+    const places = tiles.map((tile) => tile.getBoundingClientRect());
+    return [places[0], places[1], places.find(({top}) => top > places[0].top)].map(({left, top}) => ({left, top}));
+  });
+  assert.ok(second.left > first.left + 100 && second.top === first.top, `beside it: ${JSON.stringify([first, second])}`);
+  assert.equal(below.left, first.left, 'the next row begins at the left');
   await visitor.leave();
 });
 
@@ -135,13 +141,77 @@ test('a scan is shown relit in the library, and left out where only scans that a
   const page = await enter(visitor, 'sessions?words=madder');
   await until(async () => (await rig.ask('sessions?query=madder')).sessions[0].current_solve !== '');
   await page.reload();
-  const relit = rowOf(page, scanned).locator('img[src*="tiles/relit/top"]');
+  const relit = rowOf(page, scanned).locator('img[src$="/swatch.jpg"]');
   await relit.waitFor();
   await page.waitForFunction((image) => image.complete && image.naturalWidth > 100, await relit.elementHandle());
+  assert.deepEqual(await relit.evaluate(({naturalWidth, naturalHeight}) => naturalWidth - naturalHeight), 0, 'a swatch is square');
   const warned = (await rig.ask('sessions?warned=true')).total;
   await page.getByRole('button', {name: 'Clear'}).click();
   await page.getByLabel('Not good').check();
   await page.getByText(warned === 1 ? '1 session' : `${warned} sessions`, {exact: true}).waitFor();
+  await visitor.leave();
+});
+
+/** Share of the pixels of a picture that are nearly black or nearly white, as those of a tag. */
+function shareOfInk(image) {
+  const canvas = document.createElement('canvas');
+  const [width, height] = [canvas.width = image.naturalWidth, canvas.height = image.naturalHeight];
+  const context = canvas.getContext('2d');
+  context.drawImage(image, 0, 0);
+  const {data} = context.getImageData(0, 0, width, height);
+  let ink = 0;
+  for (let at = 0; at < data.length; at += 4) {
+    const [least, most] = [Math.min(data[at], data[at + 1], data[at + 2]), Math.max(data[at], data[at + 1], data[at + 2])];
+    if (most < 30 || least > 215) ink++;
+  }
+  return ink / (width * height);
+}
+
+test('a swatch is cloth: no tag and no white patch of the table is in it', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor, 'sessions?words=madder');
+  const image = rowOf(page, scanned).locator('img');
+  await image.waitFor();
+  await page.waitForFunction((each) => each.complete && each.naturalWidth > 0, await image.elementHandle());
+  const whole = (await image.getAttribute('src')).replace('swatch.jpg', 'tiles/relit/top/0_0.jpg');
+  const swatch = await image.evaluate(shareOfInk);
+  await image.evaluate((each, address) => new Promise((loaded) => { each.onload = loaded; each.src = address; }), whole);
+  const frame = await image.evaluate(shareOfInk);
+  assert.ok(frame > 0.01, `the whole frame has ${frame} of it`);
+  assert.ok(swatch < 0.001, `${swatch} of the swatch is black or white`);
+  await visitor.leave();
+});
+
+test('two swatches are compared: one dropped on the other, and both chosen by keys', async () => {
+  const {session: second} = await rig.ask('scan', {fabric: 'madder again', cloth_height_mm: 0.8});
+  await until(async () => (await rig.ask('rig')).phase === 'complete');
+  await until(async () => (await rig.ask('sessions?query=madder')).sessions.every(({current_solve}) => current_solve !== ''));
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor, 'sessions?words=madder');
+  await rowOf(page, scanned).waitFor();
+  await picture(page, 'wall');
+  await rowOf(page, second).locator('a').dragTo(rowOf(page, scanned));
+  await page.waitForURL(new RegExp(`/viewer/${second}/.*with=${scanned}`));
+  await page.getByLabel('Divider: this solve left').waitFor();
+  await page.goBack();
+
+  await rowOf(page, scanned).locator('a').focus();
+  await page.keyboard.press('ArrowLeft');
+  assert.ok(await rowOf(page, second).locator('a').evaluate((link) => link === document.activeElement), 'the newer is left of it');
+  for (const name of [scanned, second]) {
+    await rowOf(page, name).getByRole('checkbox').focus();
+    await page.keyboard.press('Space');
+  }
+  await page.getByRole('button', {name: 'Compare'}).press('Enter');
+  await page.waitForURL(/\/viewer\/.*with=/);
+  await visitor.leave();
+});
+
+test('one that is not solved is not compared, and the page says so', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor, 'sessions?words=cloth+11');
+  await rowOf(page, 's0011').locator('a').dragTo(rowOf(page, 's0110'));
+  await page.getByText('cloth 11 is not solved yet').waitFor();
   await visitor.leave();
 });
 

@@ -32,7 +32,6 @@
 namespace weft::app {
 namespace {
 
-constexpr const char* kTorture = "torture";  // the session that its job makes
 constexpr const char* kPlanPicture = "{files}/plan.svg";
 
 template <typename Described>
@@ -177,9 +176,10 @@ Result<void> add_copy_place(JobSpec& spec, const JobPlaces& places) {
   return {};
 }
 
-Result<void> add_torture_place(JobSpec& spec, const JobPlaces& places) {
-  spec.of = kTorture;
-  add(spec, {"--output", (places.sessions / fmt::format("{}.weft", kTorture)).string()});
+// The session that the job makes is called as itself.
+Result<void> add_carried_place(JobSpec& spec, const JobPlaces& places) {
+  spec.of = spec.kind;
+  add(spec, {"--output", (places.sessions / fmt::format("{}.weft", spec.kind)).string()});
   return {};
 }
 
@@ -245,7 +245,8 @@ const std::vector<JobKind>& job_kinds() {
       {"rectify", "Rectified maps", {"rectify"}, {walk<material::RectifyOptions>}},
       {"copy", "Second copy", {"copy"}, {walk<capture::CopyRequest>}, add_copy_place},
       {"make", "Maps and exports, made final", {"make"}, {walk<library::MakeOptions>}},
-      {"torture", "Torture scene", {"torture"}, {walk<simulator::TortureRequest>}, add_torture_place},
+      {"torture", "Torture scene", {"torture"}, {walk<simulator::TortureRequest>}, add_carried_place},
+      {"sample", "Sample cloth", {"sample"}, {walk<simulator::SampleRequest>}, add_carried_place},
       {"rig_plan",
        "Which light to add",
        {"rig", "plan", "--picture", kPlanPicture},

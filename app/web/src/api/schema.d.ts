@@ -7370,6 +7370,16 @@ export interface components {
             /** @description A plain word: the same once more is the same job, and asks nothing new */
             request_id?: string;
         };
+        /** Sample cloth */
+        SampleJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "sample";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+        };
         /** Which light to add */
         RigPlanJob: {
             /** @enum {string} */
@@ -8070,7 +8080,7 @@ export interface components {
             /** @description That a session may hold, else it is lost alone: 1500M, 2G */
             memory_mb?: number;
         };
-        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["RigCheckJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
+        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["SampleJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["RigCheckJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
     };
     responses: {
         /** @description Not a request that can be read */

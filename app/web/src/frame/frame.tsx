@@ -152,10 +152,11 @@ export function Frame({children}: {children: ComponentChildren}) {
   return (
     <>
       <header>
-        <a class="mark-of-weft" href="/desk" aria-label="weft">weft</a>
+        <a class="mark-of-weft" href="/tour" aria-label="weft: a first look">weft</a>
         <Tabs />
         <RunningJob />
         <RigState />
+        <a class="button quiet" href="/tour">Tour</a>
         <Button kind="quiet" label="Keys" onClick={() => showKeys(true)}>?</Button>
       </header>
       <Warnings />

@@ -25,8 +25,8 @@ const screens: Record<string, Load> = {
 function NoSuchScreen() {
   return (
     <section class="page">
-      <h1>There is no such screen</h1>
-      <p><a href="/desk">Go to the desk</a></p>
+      <h1>There is no page {place.value.screen}</h1>
+      <p>Go to the <a href="/sessions">library</a>, or <a href="/tour">look around</a>.</p>
     </section>
   );
 }

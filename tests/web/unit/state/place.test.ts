@@ -4,8 +4,9 @@ import {placeOf} from '../../../../app/web/src/state/place';
 
 const placed = (path: string) => placeOf(new URL(path, 'http://127.0.0.1:8470'));
 
-test('the bare address is the desk', () => {
-  expect(placed('/')).toMatchObject({screen: 'desk', parts: []});
+test('the bare address is no screen yet, and the library is at the name of its tab too', () => {
+  expect(placed('/')).toMatchObject({screen: '', parts: []});
+  expect(placed('/library/wool').screen).toBe('sessions');
 });
 
 test('names with dots and spaces come through', () => {

@@ -11,7 +11,6 @@ import {Empty} from '../../ui/empty';
 import {Field} from '../../ui/field';
 import {counted} from '../../ui/say';
 import {VirtualList} from '../../ui/virtual_list';
-import {TortureScene} from '../jobs/torture';
 import {BatchBar} from './batch_bar';
 import {addressOf, filtersIn, isNarrowed, type Filters, noFilters, states} from './filters';
 import {LastWord} from './last_word';
@@ -124,7 +123,7 @@ function Nothing({isNarrowed: isSearch}: {isNarrowed: boolean}) {
   return (
     <Empty says="No cloth was scanned yet.">
       <p><a href="/desk">Scan one at the desk</a></p>
-      <TortureScene />
+      <p><a href="/tour">Make a sample cloth</a></p>
     </Empty>
   );
 }

@@ -44,7 +44,7 @@ export function SessionTile({session, isChosen, onChoose}: SessionTileProps) {
       {!error && (
         <span class="tags">
           <GradeMark verdict={session.verdict} />
-          {session.solves === 0 && <span class="dim">not solved</span>}
+          {session.solves === 0 && thumbnail && <span class="dim">not solved</span>}
           {tags.map((tag) => <span key={tag} class="tag">{tag}</span>)}
         </span>
       )}

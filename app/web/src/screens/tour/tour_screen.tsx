@@ -1,52 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
-// For who is here for the first time: through a solved cloth, step by step, to a rig of one's own.
+// For who is here for the first time: a cloth in a moving light, three ways on, and what a solved cloth tells.
 import './tour.css';
 import type {ComponentChildren} from 'preact';
 import {useEffect, useState} from 'preact/hooks';
 import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
 import {rig} from '../../state/rig';
+import {useAction} from '../../ui/action';
+import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
+import {counted} from '../../ui/say';
+import {jobs, queueJob, useJobs} from '../jobs/jobs';
+import {hasEnded} from '../jobs/queue';
+import {JobLine} from '../material/job_line';
 import {addressOfViewer, FIRST_SIGHT, type Sight} from '../viewer/sight';
 
-interface Solved {
-  session: Schemas['Summary'];
-  solves: Schemas['Solves'];
+type Relit = typeof import('../viewer/viewer_screen')['RelitCloth'];
+
+
+interface Archive {
+  total: number;
+  /** The newest session that is solved and good, else one that is solved; none is. */
+  session?: Schemas['Summary'];
+  solves?: Schemas['Solves'];
 }
 
-/** The newest session that is solved; null: none is. */
-async function findSolved(): Promise<Solved | null> {
-  const {sessions} = await answer(api.GET('/api/v1/sessions', {params: {query: {limit: 100}}}));
-  const session = sessions.find(({current_solve}) => current_solve !== '');
-  if (!session) return null;
-  const solves = await answer(api.GET('/api/v1/sessions/{name}/solves', {params: {path: {name: session.name}}}));
-  return {session, solves};
+async function look(): Promise<Archive> {
+  const {sessions, total} = await answer(api.GET('/api/v1/sessions', {params: {query: {limit: 100}}}));
+  const solved = sessions.filter(({current_solve}) => current_solve !== '');
+  const session = solved.find(({verdict}) => verdict.grade === 'good') ?? solved[0];
+  const solves = session && (await answer(api.GET('/api/v1/sessions/{name}/solves', {params: {path: {name: session.name}}})));
+  return {total, session, solves};
 }
 
-function Step({href, says, children}: {href: string; says: string; children: ComponentChildren}) {
-  return <li><a href={href}>{says}</a><p>{children}</p></li>;
+function Step({href, says, picture, children}: {href: string; says: string; picture: string; children: ComponentChildren}) {
+  return <li><img src={picture} alt="" loading="lazy" /><div><a href={href}>{says}</a><p>{children}</p></div></li>;
 }
 
-function ThroughTheCloth({session, solves}: Solved) {
+function ThroughTheCloth({session, solves}: Required<Archive>) {
   const {name, fabric, current_solve} = session;
   const solve = solves.solves.find(({id}) => id === current_solve);
-  const other = solves.truth ? 'truth' : solves.solves.find(({id}) => id !== current_solve)?.id;
-  const seen = (sight: Partial<Sight>) => addressOfViewer({session: name, solve: current_solve}, {...FIRST_SIGHT, ...sight});
+  const other = solves.truth ? 'truth' : solves.solves.find(({id, width}) => id !== current_solve && width === solve?.width)?.id;
+  const maps = {session: name, solve: current_solve};
+  const seen = (sight: Partial<Sight>) => addressOfViewer(maps, {...FIRST_SIGHT, ...sight});
+  const tile = (of: string) => `/api/v1/sessions/${encodeURIComponent(name)}/solves/${current_solve}/tiles/${of}`;
   const centre = {x: Math.floor((solve?.width ?? 0) / 2), y: Math.floor((solve?.height ?? 0) / 2)};
   return (
     <>
-      <Step href={seen({})} says="Move the light">
+      <Step href={seen({})} says="Move the light" picture={tile('relit/top/0_0.jpg?light=0.9,0.1,0.4&exposure=1')}>
         {fabric || name} was photographed by one LED at a time and solved: each pixel has its own normal. Press <kbd>l</kbd> and drag.
       </Step>
       {other && (
-        <Step href={seen({other: {session: name, solve: other}, divider: 0.5, panel: 'compare'})} says={`Compare it with ${other === 'truth' ? 'the truth' : 'another solve'}`}>
+        <Step href={seen({other: {session: name, solve: other}, divider: 0.5, panel: 'compare'})} picture={tile(`difference/top/0_0.png?most=15&with=${other}`)}
+          says={`Compare it with ${other === 'truth' ? 'the truth' : 'another solve'}`}>
           Drag the divider. <kbd>d</kbd> shows the angle between the two in every pixel.
         </Step>
       )}
-      <Step href={seen({pixel: centre, panel: 'pixel'})} says="Ask a pixel">
+      <Step href={seen({pixel: centre, panel: 'pixel'})} says="Ask a pixel" picture={tile('normal/top/0_0.png')}>
         What each photograph read there stands beside what the model makes of it, and what was left out, with the reason.
       </Step>
-      <Step href="/sessions" says="Find it again">
+      <Step href="/sessions" says="Find it again" picture={session.thumbnail ?? ''}>
         The library knows cloths by words, tags and dates. <a href={`/jobs?price=${encodeURIComponent(name)}`}>Jobs</a> solve them again, and say beforehand what each level costs.
       </Step>
     </>
@@ -57,32 +70,68 @@ const serve = 'weft serve --rig rig.toml';
 
 function OwnRig() {
   return (
-    <li>
-      <strong>Connect a rig</strong>
-      <p>Plug in camera and LED board, write what they are into rig.toml, and start this page for them.</p>
+    <div>
+      <h2>Connect a rig</h2>
+      <p>Plug in camera and LED board, write what they are into rig.toml (<code>weft rig new</code> begins it), and start this page for them.</p>
       <div class="row"><code>{serve}</code><Copy text={serve} /></div>
       <p>Its <a href="/doctor">doctor</a> says what is still wrong, and what mends it. Then it is calibrated, and scans.</p>
-    </li>
+    </div>
+  );
+}
+
+/** Makes a cloth where no rig can. */
+function Sample({onMade}: {onMade: () => void}) {
+  useJobs();
+  const make = useAction(async () => void (await queueJob({kind: 'sample'})));
+  const job = jobs.value.find(({kind}) => kind === 'sample');
+  const isBusy = make.isBusy || (job !== undefined && !hasEnded(job));
+  useEffect(() => {
+    if (job?.state === 'done') onMade();
+  }, [job?.id, job?.state]);
+  return (
+    <>
+      <Button isDisabled={isBusy} onClick={() => void make.run()}>Try it without a rig</Button>
+      <p>A houndstooth is simulated under ten LEDs, solved and made a material: a sample cloth, in seconds.</p>
+      <Complaint error={make.complaint} />
+      {job && <JobLine job={job} />}
+    </>
   );
 }
 
 export default function TourScreen() {
-  const [solved, setSolved] = useState<Solved | null | undefined>();
+  const [archive, setArchive] = useState<Archive | null>(null);
   const [complaint, setComplaint] = useState<ApiError | null>(null);
-  useEffect(() => {
-    findSolved().then(setSolved, (error: unknown) => setComplaint(asApiError(error)));
-  }, []);
+  const again = () => void look().then(setArchive, (error: unknown) => setComplaint(asApiError(error)));
+  const [relit, setRelit] = useState<{RelitCloth: Relit} | null>(null);
+  useEffect(again, []);
+  useEffect(() => void import('../viewer/viewer_screen').then(setRelit, () => {}), []);
   const hasRig = rig.value?.devices.board.leds !== 0;
+  const {session, solves} = archive ?? {};
+  const name = session && {session: session.name, solve: session.current_solve};
   return (
     <section class="page tour">
       <h1>A first look</h1>
-      {!hasRig && <p>This server has no rig: it shows archives. <a href="/sessions">Look at their sessions</a></p>}
       <Complaint error={complaint} />
-      {solved === null && <p>No session is solved yet.</p>}
-      <ol>
-        {solved && <ThroughTheCloth {...solved} />}
-        {hasRig ? <Step href="/desk" says="Scan a cloth">Lay it on the table; the desk says what to press.</Step> : <OwnRig />}
-      </ol>
+      <div class="first">
+        <div>
+          {session && name ? (
+            <>
+              {relit ? <relit.RelitCloth key={name.solve} name={name} says={session.fabric || session.name} /> : <p class="relit" />}
+              <p>{session.fabric || session.name}: <a href={addressOfViewer(name)}>look closer</a>, or <a href={`/material/${name.session}`}>see it on a ball</a></p>
+            </>
+          ) : archive && <p class="relit empty">No cloth is solved here yet.</p>}
+        </div>
+        <ul class="ways">
+          {hasRig && <li><a class="button main" href="/desk">Scan</a><p>Lay a cloth on the table; the desk says what to press.</p></li>}
+          <li>
+            <a class="button" href="/sessions">Look</a>
+            <p>{archive && counted(archive.total, 'cloth')} in the library.{!hasRig && ' This server has no rig: it shows archives.'}</p>
+          </li>
+          <li><Sample onMade={again} /></li>
+        </ul>
+      </div>
+      {session && solves && <ol><ThroughTheCloth total={0} session={session} solves={solves} /></ol>}
+      {!hasRig && <OwnRig />}
     </section>
   );
 }

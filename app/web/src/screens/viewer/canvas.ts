@@ -11,6 +11,9 @@ const ARRIVALS_MS = 100;
 
 export type Means = 'webgl' | 'pictures' | 'lost' | 'none';
 
+/** What is shown of a viewer. */
+export type Shown = {readonly [part in 'scene' | 'canvas' | 'isComing']: Pick<Viewer[part], 'value' | 'peek'>};
+
 export class PictureCanvas {
   readonly means: Signal<Means> = signal<Means>('none');
   readonly failure = signal<ApiError | null>(null);
@@ -23,8 +26,8 @@ export class PictureCanvas {
   private readonly ends: (() => void)[] = [];
 
   constructor(
-    private readonly element: HTMLCanvasElement,
-    private readonly viewer: Viewer,
+    readonly element: HTMLCanvasElement,
+    private readonly viewer: Shown,
   ) {
     this.begin();
     this.listen('webglcontextlost', (event) => this.lose(event));

@@ -3,7 +3,6 @@ import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type ApiError, asApiError, type Schemas} from '../../api/client';
 import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
-import {TortureScene} from '../jobs/torture';
 import {addressOfViewer} from './sight';
 
 type Summary = Schemas['Summary'];
@@ -27,7 +26,7 @@ export function NoSession() {
       {sessions?.length === 0 && (
         <Empty says="No session is solved yet.">
           <p>Scan a cloth at the <a href="/desk">desk</a>, or queue a solve of a session under <a href="/jobs">jobs</a>.</p>
-          <TortureScene />
+          <p><a href="/tour">Make a sample cloth</a></p>
         </Empty>
       )}
       <ul class="choose-session">

@@ -29,6 +29,8 @@ import {Toolbar, useViewerKeys} from './toolbar';
 import {Viewer} from './viewer';
 import {WhyPanel} from './why_panel';
 
+export {RelitCloth} from './relit_cloth';
+
 export default function ViewerScreen() {
   const {parts} = place.value;
   const [session] = parts;

@@ -78,6 +78,7 @@ TEST_F(JobBody, BecomesAVerbWithItsArguments) {
   EXPECT_EQ(arguments(R"({"kind": "copy", "session": "satin"})"),
             (Words{"copy", "/scans/satin.weft", "--to", "/copies"}));
   EXPECT_EQ(arguments(R"({"kind": "torture"})"), (Words{"torture", "--output", "/scans/torture.weft"}));
+  EXPECT_EQ(arguments(R"({"kind": "sample"})"), (Words{"sample", "--output", "/scans/sample.weft"}));
   EXPECT_EQ(
       arguments(R"({"kind": "check", "session": "satin", "from": "calibrations/may"})"),
       (Words{"calibrate", "check", "--session", "/scans/satin.weft", "--from", path("calibrations/may")}));
