@@ -78,7 +78,6 @@ function FirstSteps({parts}: Pick<Calibrated, 'parts'>) {
       </ol>
       <p><a href="/doctor">What is wrong with the rig, if anything</a></p>
       <p><a href="/calibrate">How well it is calibrated</a></p>
-      <p><a href="/tour">What a solved cloth looks like</a></p>
     </Empty>
   );
 }

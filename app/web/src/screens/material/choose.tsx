@@ -31,7 +31,7 @@ export function Choose() {
       <h1>Material</h1>
       <Complaint error={complaint} />
       <h2>Cloths that were scanned</h2>
-      {sessions?.length === 0 && <Empty says="No cloth is scanned yet."><p>Scan one at the <a href="/desk">desk</a>.</p></Empty>}
+      {sessions?.length === 0 && <Empty says="No cloth is scanned yet."><p><a href="/tour">Ways to begin</a></p></Empty>}
       <ul class="choose-material" aria-label="Cloths">
         {sessions?.map(({name, fabric}) => <li key={name}><a href={`/material/${name}`}>{fabric || name}</a> <span class="dim">{name}</span></li>)}
       </ul>

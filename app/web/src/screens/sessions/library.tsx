@@ -122,8 +122,7 @@ function Nothing({isNarrowed: isSearch}: {isNarrowed: boolean}) {
   if (isSearch) return <Empty says="No session is like that. Take a word or a filter away." />;
   return (
     <Empty says="No cloth was scanned yet.">
-      <p><a href="/desk">Scan one at the desk</a></p>
-      <p><a href="/tour">Make a sample cloth</a></p>
+      <p><a href="/tour">Ways to begin</a></p>
     </Empty>
   );
 }

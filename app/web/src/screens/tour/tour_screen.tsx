@@ -5,14 +5,10 @@ import type {ComponentChildren} from 'preact';
 import {useEffect, useState} from 'preact/hooks';
 import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
 import {rig} from '../../state/rig';
-import {useAction} from '../../ui/action';
-import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import {counted} from '../../ui/say';
-import {jobs, queueJob, useJobs} from '../jobs/jobs';
-import {hasEnded} from '../jobs/queue';
-import {JobLine} from '../material/job_line';
+import {Simulated} from '../jobs/simulated';
 import {addressOfViewer, FIRST_SIGHT, type Sight} from '../viewer/sight';
 
 type Relit = typeof import('../viewer/viewer_screen')['RelitCloth'];
@@ -40,7 +36,7 @@ function Step({href, says, picture, children}: {href: string; says: string; pict
 function ThroughTheCloth({session, solves}: Required<Archive>) {
   const {name, fabric, current_solve} = session;
   const solve = solves.solves.find(({id}) => id === current_solve);
-  const other = solves.truth ? 'truth' : solves.solves.find(({id, width}) => id !== current_solve && width === solve?.width)?.id;
+  const other = solves.truth ? 'truth' : solves.solves.find((each) => each !== solve && each.width === solve?.width)?.id;
   const maps = {session: name, solve: current_solve};
   const seen = (sight: Partial<Sight>) => addressOfViewer(maps, {...FIRST_SIGHT, ...sight});
   const tile = (of: string) => `/api/v1/sessions/${encodeURIComponent(name)}/solves/${current_solve}/tiles/${of}`;
@@ -51,16 +47,16 @@ function ThroughTheCloth({session, solves}: Required<Archive>) {
         {fabric || name} was photographed by one LED at a time and solved: each pixel has its own normal. Press <kbd>l</kbd> and drag.
       </Step>
       {other && (
-        <Step href={seen({other: {session: name, solve: other}, divider: 0.5, panel: 'compare'})} picture={tile(`difference/top/0_0.png?most=15&with=${other}`)}
+        <Step href={seen({other: {session: name, solve: other}, divider: 0.5, panel: 'compare'})} picture={tile(`difference/top/0_0.png?most=2&with=${other}`)}
           says={`Compare it with ${other === 'truth' ? 'the truth' : 'another solve'}`}>
           Drag the divider. <kbd>d</kbd> shows the angle between the two in every pixel.
         </Step>
       )}
       <Step href={seen({pixel: centre, panel: 'pixel'})} says="Ask a pixel" picture={tile('normal/top/0_0.png')}>
-        What each photograph read there stands beside what the model makes of it, and what was left out, with the reason.
+        What each photograph read there, what the model makes of it, what was left out and why.
       </Step>
       <Step href="/sessions" says="Find it again" picture={session.thumbnail ?? ''}>
-        The library knows cloths by words, tags and dates. <a href={`/jobs?price=${encodeURIComponent(name)}`}>Jobs</a> solve them again, and say beforehand what each level costs.
+        By words, tags and dates. <a href={`/jobs?price=${encodeURIComponent(name)}`}>Jobs</a> solve it again, and say beforehand what each level costs.
       </Step>
     </>
   );
@@ -72,29 +68,9 @@ function OwnRig() {
   return (
     <div>
       <h2>Connect a rig</h2>
-      <p>Plug in camera and LED board, write what they are into rig.toml (<code>weft rig new</code> begins it), and start this page for them.</p>
+      <p>Plug in camera and LED board, write what they are into rig.toml, and start this page for them. Its <a href="/doctor">doctor</a> says what is still wrong.</p>
       <div class="row"><code>{serve}</code><Copy text={serve} /></div>
-      <p>Its <a href="/doctor">doctor</a> says what is still wrong, and what mends it. Then it is calibrated, and scans.</p>
     </div>
-  );
-}
-
-/** Makes a cloth where no rig can. */
-function Sample({onMade}: {onMade: () => void}) {
-  useJobs();
-  const make = useAction(async () => void (await queueJob({kind: 'sample'})));
-  const job = jobs.value.find(({kind}) => kind === 'sample');
-  const isBusy = make.isBusy || (job !== undefined && !hasEnded(job));
-  useEffect(() => {
-    if (job?.state === 'done') onMade();
-  }, [job?.id, job?.state]);
-  return (
-    <>
-      <Button isDisabled={isBusy} onClick={() => void make.run()}>Try it without a rig</Button>
-      <p>A houndstooth is simulated under ten LEDs, solved and made a material: a sample cloth, in seconds.</p>
-      <Complaint error={make.complaint} />
-      {job && <JobLine job={job} />}
-    </>
   );
 }
 
@@ -119,7 +95,7 @@ export default function TourScreen() {
               {relit ? <relit.RelitCloth key={name.solve} name={name} says={session.fabric || session.name} /> : <p class="relit" />}
               <p>{session.fabric || session.name}: <a href={addressOfViewer(name)}>look closer</a>, or <a href={`/material/${name.session}`}>see it on a ball</a></p>
             </>
-          ) : archive && <p class="relit empty">No cloth is solved here yet.</p>}
+          ) : archive && <p class="relit gingham">No cloth is solved here yet.</p>}
         </div>
         <ul class="ways">
           {hasRig && <li><a class="button main" href="/desk">Scan</a><p>Lay a cloth on the table; the desk says what to press.</p></li>}
@@ -127,7 +103,10 @@ export default function TourScreen() {
             <a class="button" href="/sessions">Look</a>
             <p>{archive && counted(archive.total, 'cloth')} in the library.{!hasRig && ' This server has no rig: it shows archives.'}</p>
           </li>
-          <li><Sample onMade={again} /></li>
+          <li>
+            <Simulated kind="sample" says="Try it without a rig" isMain={!hasRig && !session} onMade={again} />
+            <p>A sample cloth in seconds: simulated, solved, a material.</p>
+          </li>
         </ul>
       </div>
       {session && solves && <ol><ThroughTheCloth total={0} session={session} solves={solves} /></ol>}

@@ -71,7 +71,9 @@ export function ComparePanel({viewer}: {viewer: Viewer}) {
 function obstacle(viewer: Viewer): string {
   const maps = viewer.maps.value;
   const other = viewer.other.value;
-  return maps && other && !isSameSize(maps, other) ? 'The two have different sizes.' : '';
+  if (!maps || !other || isSameSize(maps, other)) return '';
+  const sizes = [maps, other].map(({name, solve}) => `${clothOf(name.session)} has ${solve.width} × ${solve.height} pixels`);
+  return `${sizes.join(', ')}: solve both at one level.`;
 }
 
 export function toggleDivider(viewer: Viewer): void {

@@ -25,8 +25,7 @@ export function NoSession() {
       <Complaint error={complaint} />
       {sessions?.length === 0 && (
         <Empty says="No session is solved yet.">
-          <p>Scan a cloth at the <a href="/desk">desk</a>, or queue a solve of a session under <a href="/jobs">jobs</a>.</p>
-          <p><a href="/tour">Make a sample cloth</a></p>
+          <p><a href="/tour">Ways to begin</a></p>
         </Empty>
       )}
       <ul class="choose-session">

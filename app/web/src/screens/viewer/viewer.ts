@@ -209,7 +209,8 @@ export class Viewer {
       const maps = await loadMaps(name);
       if (this.isClosed) return;
       into.value = maps;
-      if (into === this.other) await this.compare(name);
+      const first = this.maps.peek();
+      if (into === this.other && (!first || isSameSize(first, maps))) await this.compare(name);
     } catch (error) {
       this.complaint.value = asApiError(error);
     }
