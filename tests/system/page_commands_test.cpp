@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <sstream>
 #include <string>
@@ -210,6 +211,21 @@ TEST_F(PageCommands, AFolderIsCalledByItsNameHoweverItIsWritten) {
   for (const Ran& ran : run({"weft torture -o t.weft/ -q --json", "cd t.weft; weft torture -o . -q --json",
                              "cd raw; weft torture -o .. -q --json"}))
     EXPECT_EQ(Json::parse(ran.said, nullptr, false).value("session", ""), "t") << ran.said;
+}
+
+// Without gloss and light between yarns the solve is off by 0.40 degrees on average.
+TEST_F(PageCommands, ASampleClothIsSolvedNearItsTruthAndMadeOnce) {
+  const std::vector<Ran> ran =
+      run({"weft sample -o s.weft -q --json", "weft sample -o s.weft -q --json",
+           "weft compare s.weft/solve/*/normal.exr s.weft/truth/normal.exr -q --json"});
+  const Json made = Json::parse(ran[0].said, nullptr, false),
+             again = Json::parse(ran[1].said, nullptr, false);
+  EXPECT_EQ(made.value("session", ""), "s") << ran[0].said;
+  EXPECT_EQ(made, again);
+  EXPECT_TRUE(fs::exists(work_ / "s.weft" / "maps" / made.value("maps", "none") / "normal.exr")) << made;
+  EXPECT_EQ(std::distance(fs::directory_iterator(work_ / "s.weft" / "solve"), {}), 1);
+  const Json compared = Json::parse(ran[2].said, nullptr, false);
+  EXPECT_LT(compared.value("mean_deg", 180.0), 0.6) << ran[2].said;
 }
 
 // However its rig is named, what lies beside the rig file is found, and a job may be asked for it.

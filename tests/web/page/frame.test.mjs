@@ -93,7 +93,7 @@ test('an unknown address says so', async () => {
   const page = await enter(visitor);
   await page.evaluate(() => history.pushState(null, '', '/nowhere'));
   await page.evaluate(() => dispatchEvent(new PopStateEvent('popstate')));
-  await page.getByRole('heading', {name: 'There is no such screen'}).waitFor();
+  await page.getByRole('heading', {name: 'There is no page nowhere'}).waitFor();
   await visitor.leave();
 });
 

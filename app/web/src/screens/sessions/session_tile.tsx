@@ -32,7 +32,7 @@ export function SessionTile({session, isChosen, onChoose}: SessionTileProps) {
     <div class={isChosen ? 'session chosen' : 'session'} onDragOver={(event) => event.preventDefault()} onDrop={drop}>
       <a href={`/sessions/${name}`} draggable onDragStart={(event) => event.dataTransfer?.setData('text', name)}>
         <span class="swatch">
-          {thumbnail && <img src={thumbnail} alt="" loading="lazy" decoding="async" draggable={false} />}
+          {thumbnail && <img src={thumbnail} alt="" loading="lazy" draggable={false} />}
           {error && <span class="error">{['what', 'why', 'remedy'].map((part) => textIn(error, part)).filter(Boolean).join('. ')}</span>}
         </span>
         {fabric || name}
