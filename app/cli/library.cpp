@@ -286,8 +286,9 @@ Run add_tag(Options& options) {
   options
       .add(
           "--set", &a->set,
-          "KEY=VALUE: fabric, id, composition, construction, side (front, back), notes, weight_g_m2, "
-          "thickness_mm, current_solve, left_out (indices of shots, by commas, that no solve uses); no value "
+          "KEY=VALUE: fabric, id, composition, construction, side (front, back), kind (cotton, wool, velvet, "
+          "satin, dark-satin: what maps assume of its gloss), notes, weight_g_m2, thickness_mm, "
+          "current_solve, left_out (indices of shots, by commas, that no solve uses); no value "
           "removes it")
       .one_at_a_time();
   return [a](const CommonArguments& common) { return tag(*a, common); };

@@ -37,7 +37,7 @@ struct Found {
 namespace {
 
 // Raised whenever the tables change.
-constexpr int kVersion = 5;
+constexpr int kVersion = 6;
 constexpr std::size_t kMostRanked = 20'000;
 constexpr int kMostLimit = 1000;
 constexpr std::size_t kBatch = 500;  // of sessions that are written together, so that others write between
@@ -52,7 +52,7 @@ CREATE TABLE session(
   revision INTEGER, id TEXT, tags TEXT, composition TEXT, construction TEXT, side TEXT, notes TEXT,
   weight_g_m2 REAL, thickness_mm REAL,
   shots INTEGER, solves INTEGER, current_solve TEXT, taken TEXT, all_bytes INTEGER, warnings TEXT,
-  lit_shot INTEGER, lit_sha256 TEXT, grade INTEGER, says TEXT, action TEXT);
+  lit_shot INTEGER, lit_sha256 TEXT, grade INTEGER, says TEXT, action TEXT, kind TEXT);
 CREATE INDEX session_unfinished ON session(rig, taken DESC, key DESC) WHERE state NOT IN ('complete', 'unreadable');
 CREATE INDEX session_taken ON session(taken DESC, key DESC);
 CREATE INDEX session_name ON session(name);
@@ -82,20 +82,20 @@ END;
 constexpr const char* kPut = R"(
 INSERT INTO session(folder, name, bytes, written, solved, fabric, rig, calibration, state, error, revision,
   id, tags, composition, construction, side, notes, weight_g_m2, thickness_mm, shots, solves,
-  current_solve, taken, all_bytes, warnings, lit_shot, lit_sha256, grade, says, action)
+  current_solve, taken, all_bytes, warnings, lit_shot, lit_sha256, grade, says, action, kind)
 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23,
-  ?24, ?25, ?26, ?27, ?28, ?29, ?30)
+  ?24, ?25, ?26, ?27, ?28, ?29, ?30, ?31)
 ON CONFLICT(folder) DO UPDATE SET
   bytes = ?3, written = ?4, solved = ?5, fabric = ?6, rig = ?7, calibration = ?8, state = ?9, error = ?10,
   revision = ?11, id = ?12, tags = ?13, composition = ?14, construction = ?15, side = ?16, notes = ?17,
   weight_g_m2 = ?18, thickness_mm = ?19, shots = ?20, solves = ?21, current_solve = ?22, taken = ?23,
   all_bytes = ?24, warnings = ?25, lit_shot = ?26, lit_sha256 = ?27,
-  grade = ?28, says = ?29, action = ?30)";
+  grade = ?28, says = ?29, action = ?30, kind = ?31)";
 
 constexpr const char* kGet =
     "SELECT key, folder, name, fabric, rig, calibration, state, error, revision, id, tags, composition, "
     "construction, side, notes, weight_g_m2, thickness_mm, shots, solves, current_solve, taken, written, "
-    "all_bytes, warnings, lit_shot, lit_sha256, grade, says, action FROM session WHERE key = ?";
+    "all_bytes, warnings, lit_shot, lit_sha256, grade, says, action, kind FROM session WHERE key = ?";
 
 std::int64_t nanoseconds(fs::file_time_type time) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -209,6 +209,7 @@ Result<void> put_one(Statement& put, Statement& tag, const Found& found, const E
   put.bind(e.current_solve).bind(e.taken).bind(static_cast<std::int64_t>(e.bytes)).bind(joined(e.warnings));
   put.bind(std::int64_t{e.lit_shot}).bind(e.lit_sha256);
   put.bind(static_cast<std::int64_t>(e.verdict.grade)).bind(e.verdict.says).bind(e.verdict.action);
+  put.bind(m.kind);
   if (Result<void> ok = put.run(); !ok) return ok;
   for (const std::string& each : m.tags) {
     if (Result<void> ok = tag.bind(each).bind(folder).run(); !ok) return ok;
@@ -503,6 +504,7 @@ Result<Entry> Catalogue::entry(std::int64_t key) {
                 .composition = get->text(11),
                 .construction = get->text(12),
                 .side = get->text(13),
+                .kind = get->text(29),
                 .notes = get->text(14),
                 .weight_g_m2 = get->number(15),
                 .thickness_mm = get->number(16)};

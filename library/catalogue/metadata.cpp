@@ -2,6 +2,7 @@
 #include "library/catalogue/metadata.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "core/base/text.h"
+#include "core/rig/cloth_kinds.h"
 #include "core/solve/solve.h"
 #include "solve/session/current.h"
 #include "solve/session/left_out_shots.h"
@@ -53,6 +55,12 @@ std::string notes_rule(const Json& value) {
 std::string side_rule(const Json& value) {
   return value == "front" || value == "back" ? "" : "must be front or back";
 }
+std::string kind_rule(const Json& value) {
+  const bool is_one =
+      value.is_string() &&
+      std::ranges::find(kClothKinds, value.get_ref<const std::string&>()) != kClothKinds.end();
+  return is_one ? "" : fmt::format("must be one of {}", fmt::join(kClothKinds, ", "));
+}
 std::string amount_rule(const Json& value) {
   if (!value.is_number()) return "must be a number";
   const double amount = value.get<double>();
@@ -74,11 +82,12 @@ struct Field {
   const char* key;
   Rule rule;
 };
-constexpr std::array<Field, 8> kFields = {{{"id", line_rule},
+constexpr std::array<Field, 9> kFields = {{{"id", line_rule},
                                            {"tags", tags_rule},
                                            {"composition", line_rule},
                                            {"construction", line_rule},
                                            {"side", side_rule},
+                                           {"kind", kind_rule},
                                            {"notes", notes_rule},
                                            {"weight_g_m2", amount_rule},
                                            {"thickness_mm", amount_rule}}};
@@ -207,6 +216,7 @@ Result<Metadata> metadata_from_json(const Json& document, const std::string& whe
   metadata.composition = document.value("composition", "");
   metadata.construction = document.value("construction", "");
   metadata.side = document.value("side", "");
+  metadata.kind = document.value("kind", "");
   metadata.notes = document.value("notes", "");
   metadata.weight_g_m2 = document.value("weight_g_m2", 0.0);
   metadata.thickness_mm = document.value("thickness_mm", 0.0);
@@ -241,6 +251,7 @@ Json json_of(const Metadata& m) {
           {"composition", m.composition},
           {"construction", m.construction},
           {"side", m.side},
+          {"kind", m.kind},
           {"notes", m.notes},
           {"weight_g_m2", amount(m.weight_g_m2)},
           {"thickness_mm", amount(m.thickness_mm)},

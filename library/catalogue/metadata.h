@@ -10,7 +10,7 @@
 #include "core/base/result.h"
 #include "core/rig/session.h"
 
-// What people say of a cloth, kept in its session.json. No solve depends on it.
+// What people say of a cloth, kept in its session.json. No solve depends on it; maps do on its kind.
 
 namespace weft::library {
 
@@ -22,6 +22,7 @@ struct Metadata {
   std::string composition = {};        ///< "80 % wool, 20 % polyamide"
   std::string construction = {};       ///< "twill 2/1"
   std::string side = {};               ///< "front" or "back"
+  std::string kind = {};               ///< of kClothKinds
   std::string notes = {};              ///< may have several lines
   double weight_g_m2 = 0;
   double thickness_mm = 0;
@@ -41,8 +42,8 @@ Result<Metadata> metadata_from_json(const Json& document, const std::string& whe
 Result<void> check_new_metadata(const Json& metadata);
 /// What a session says; empty where it says nothing. kBadData.
 Result<Metadata> metadata_of(const Session& session);
-/// {"id", "tags", "composition", "construction", "side", "notes", "weight_g_m2", "thickness_mm", "revision"};
-/// amounts that nobody said are null.
+/// {"id", "tags", "composition", "construction", "side", "kind", "notes", "weight_g_m2", "thickness_mm",
+/// "revision"}; amounts that nobody said are null.
 Json json_of(const Metadata& metadata);
 
 /// A change that was made, and what undoes it: `before` and `after` hold the fields that differ, null where

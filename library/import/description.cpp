@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 8> kMetadataKeys = {"id",   "tags",  "composition", "construction",
-                                                           "side", "notes", "weight_g_m2", "thickness_mm"};
+constexpr std::array<std::string_view, 9> kMetadataKeys = {
+    "id", "tags", "composition", "construction", "side", "kind", "notes", "weight_g_m2", "thickness_mm"};
 
 Error refused(const fs::path& file, const std::string& key, std::string why) {
   return {ErrorKind::kBadData, "what is said of the photographs cannot be used",

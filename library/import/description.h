@@ -25,7 +25,7 @@ struct ImportDescription {
 };
 
 /// Reads import.toml, or NAME.json with the same keys: fabric, cloth_height_mm, exposure_us, iso, f_number;
-/// id (or barcode), tags, composition, construction, side, notes, weight_g_m2, thickness_mm. kNoInput;
+/// id (or barcode), tags, composition, construction, side, kind, notes, weight_g_m2, thickness_mm. kNoInput;
 /// kBadData for what cannot be read, a key that is none of these, and a value that breaks its rule.
 Result<ImportDescription> read_description(const std::filesystem::path& file);
 

@@ -24,6 +24,7 @@ TEST(Metadata, IsWrittenIntoTheSessionAndReadBack) {
                                                                  {"composition", "80 % wool"},
                                                                  {"construction", "twill 2/1"},
                                                                  {"side", "back"},
+                                                                 {"kind", "velvet"},
                                                                  {"notes", "first line\nsecond"},
                                                                  {"weight_g_m2", 210},
                                                                  {"thickness_mm", 0.7},
@@ -41,6 +42,7 @@ TEST(Metadata, IsWrittenIntoTheSessionAndReadBack) {
                                               .composition = "80 % wool",
                                               .construction = "twill 2/1",
                                               .side = "back",
+                                              .kind = "velvet",
                                               .notes = "first line\nsecond",
                                               .weight_g_m2 = 210,
                                               .thickness_mm = 0.7}));
