@@ -7,15 +7,18 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "core/base/percent.h"
+#include "core/base/vec.h"
 #include "material/filtering/detail.h"
 #include "material/finish/color_correction.h"
 #include "material/finish/crop.h"
+#include "material/finish/part.h"
 #include "material/finish/repair.h"
 #include "material/finish/straighten.h"
 #include "material/finish/tile.h"
@@ -90,6 +93,68 @@ Picture yarn_picture(const Surface& surface, const Lattice& lattice) {
   return picture;
 }
 
+// The way back from a grid that was cut and straightened to the one that it began as.
+class WayBack {
+ public:
+  void cut(int left, int top) {
+    steps_.push_back({{}, {}, static_cast<double>(left), static_cast<double>(top)});
+  }
+  void straighten(Lookup lookup, Size old) { steps_.push_back({std::move(lookup), old, 0, 0}); }
+
+  FinishedPlace of(Size size) const {
+    const double w = size.width, h = size.height;
+    FinishedPlace place = {.centre_px = at(w / 2, h / 2)};
+    const std::array<std::array<double, 2>, 4> corners = {at(0, 0), at(w, 0), at(w, h), at(0, h)};
+    for (std::size_t i = 0; i < 8; ++i) place.corners_px[i] = corners[i / 2][i % 2];
+    return place;
+  }
+
+ private:
+  struct Step {
+    Lookup lookup;  // empty: a cut
+    Size old;
+    double left = 0, top = 0;
+  };
+
+  // Places are between edges of pixels: the first one lies from 0 to 1.
+  std::array<double, 2> at(double x, double y) const {
+    for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) {
+      if (step->old.pixels() == 0) {
+        x += step->left;
+        y += step->top;
+        continue;
+      }
+      const Vec2 place = step->lookup.at(x - 0.5, y - 0.5).at;
+      x = step->old.width / 2.0 + place.x;
+      y = step->old.height / 2.0 - place.y;
+    }
+    return {x, y};
+  }
+
+  std::vector<Step> steps_;
+};
+
+// The shortest repeats along the yarns, y down; of ribs the one across them.
+Json repeat_of(const Lattice& lattice) {
+  const auto [a, b] = lattice.axes;
+  const double mm = lattice.mm_per_pixel;
+  Json repeat = {{"across_px", {a.x, -a.y}}, {"across_mm", mm * length(a)}};
+  if (lattice.kind != LatticeKind::kRepeat) return repeat;
+  repeat.update({{"up_px", {b.x, -b.y}},
+                 {"up_mm", mm * length(b)},
+                 {"angle_deg", degrees(std::atan2(cross(a, b), dot(a, b)))}});
+  return repeat;
+}
+
+// Whether a step says places from the left upper corner.
+bool names_places(const RecipeStep& step) {
+  return step.name == "crop" || step.name == "repair";
+}
+
+bool works_by_repeats(const RecipeStep& step) {
+  return step.name == "straighten" || step.name == "tile" || step.name == "detail";
+}
+
 // By material::FlattenMethod.
 constexpr std::array<const char*, 3> kFlattenNames = {"polynomial", "corners", "high-pass"};
 
@@ -101,9 +166,14 @@ class Finisher {
 
   Result<Json> run(const Recipe& recipe, std::size_t at) {
     const RecipeStep& step = recipe.steps[at];
+    const bool names_later =
+        std::any_of(recipe.steps.begin() + static_cast<std::ptrdiff_t>(at), recipe.steps.end(), names_places);
+    // What is straightened is cut once its repeat was found, which the whole cloth tells.
+    if (works_by_repeats(step) && step.name != "straighten" && !names_later) take_part({});
+    may_cut_ = !names_later;
     if (step.name == "flatten") return flatten(step.options);
     if (step.name == "straighten") return straighten(recipe, at);
-    if (step.name == "crop") return crop(step.options);
+    if (step.name == "crop") return crop(recipe, at);
     if (step.name == "tile") return tile();
     if (step.name == "repair") return repair(step.options);
     if (step.name == "color") return color(step.options);
@@ -111,9 +181,47 @@ class Finisher {
     return detail();
   }
 
+  // What is known of all steps together.
+  FinishingFacts finish() {
+    take_part({});
+    facts.place = back_.of(surface_.size());
+    return std::move(facts);
+  }
+
   FinishingFacts facts;
 
  private:
+  // A preview goes on with the middle of the cloth, at least as large as this.
+  void take_part(Size least) {
+    const Size whole = surface_.size();
+    const bool is_large = input_.most_px > 0 && whole.pixels() > input_.most_px;
+    if (!is_large || is_part_ || surface_.is_tile) return;
+    is_part_ = true;
+    const double side = std::sqrt(static_cast<double>(input_.most_px));
+    const auto held = [](double wanted, int at_least, int all) {
+      return std::min(std::max(static_cast<int>(wanted), at_least), all);
+    };
+    const int h = held(std::max(side, static_cast<double>(input_.most_px) / whole.width), least.height,
+                       whole.height),
+              w = held(static_cast<double>(input_.most_px) / h, least.width, whole.width);
+    if (w == whole.width && h == whole.height) return;
+    const Rect part = {(whole.width - w) / 2, (whole.height - h) / 2, (whole.width + w) / 2,
+                       (whole.height + h) / 2};
+    const double mm = surface_.mm_per_pixel;
+    facts.part_mm = {mm * w, mm * h, mm * whole.width, mm * whole.height};
+    back_.cut(part.x0, part.y0);
+    surface_ = part_of(surface_, part);
+  }
+
+  // What so many repeats, the joint of their ends and the turn take.
+  static Size room_of(const Lattice& lattice, const std::array<int, 2>& repeats) {
+    constexpr double kJoint_px = 64;
+    const auto [a, b] = lattice.axes;
+    const double x = (repeats[0] + 2) + kJoint_px / length(a), y = (repeats[1] + 2) + kJoint_px / length(b);
+    return {static_cast<int>(x * std::abs(a.x) + y * std::abs(b.x)),
+            static_cast<int>(x * std::abs(a.y) + y * std::abs(b.y))};
+  }
+
   // The repeats of the tile that comes after; a straightened cloth is scaled so that so many are whole
   // pixels.
   static std::array<int, 2> repeats_wanted(const Recipe& recipe, std::size_t from) {
@@ -177,10 +285,12 @@ class Finisher {
     const Json& said = recipe.steps[at].options;
     SaidYarns yarns;
     if (!said["turn_deg"].is_null()) yarns.turn_deg = said["turn_deg"].get<double>();
-    yarns.x_px = said["yarn_px"][0].get<double>() / input_.coarser;
-    yarns.y_px = said["yarn_px"][1].get<double>() / input_.coarser;
+    yarns.x_px = said["yarn_px"][0].get<double>();
+    yarns.y_px = said["yarn_px"][1].get<double>();
     if (Result<void> ok = find_lattice(yarns); !ok) return std::move(ok).error();
     Json found = {{"acts", false}, {"kind", name_of(lattice_->kind)}};
+    const bool is_one_way = lattice_->kind == LatticeKind::kOneWay;
+    if (is_one_way || lattice_->kind == LatticeKind::kRepeat) found["repeat"] = repeat_of(*lattice_);
     if (lattice_->kind != LatticeKind::kRepeat) {
       warn("NO_REPEAT", fmt::format("the cloth was not straightened: {}", words_of(lattice_->kind)),
            "nothing, if it has none; else scan more of it");
@@ -202,6 +312,8 @@ class Finisher {
     options.repeats_x = repeats[0];
     options.repeats_y = repeats[1];
     options.threads = context_.threads;
+    if (may_cut_) take_part(room_of(*lattice_, repeats));
+    const Size old = surface_.size();
     Result<Straightened> straight = material::straighten(surface_, *lattice_, options);
     if (!straight) return std::move(straight).error();
     found.update({{"acts", true},
@@ -211,6 +323,7 @@ class Finisher {
                   {"largest_pull_mm", straight->largest_pull_mm},
                   {"rms_pull_mm", straight->rms_pull_mm}});
     tile_ = tile_of(*straight);
+    back_.straighten(std::move(straight->lookup), old);
     surface_ = std::move(straight->surface);
     lattice_.reset();
     is_left_turned_ = false;
@@ -232,7 +345,7 @@ class Finisher {
          fmt::format(
              "look at {}; where its lines lie along the yarns give the recipe straighten = {{ turn_deg = "
              "{:.2f}, yarn_px = [{:.2f}, {:.2f}] }}, else what is true",
-             file, turn_deg, input_.coarser * lattice_->yarn_x_px, input_.coarser * lattice_->yarn_y_px));
+             file, turn_deg, lattice_->yarn_x_px, lattice_->yarn_y_px));
     is_left_turned_ = true;
     return file;
   }
@@ -264,12 +377,14 @@ class Finisher {
                   {"relief_mm", cut->relief_mm},
                   {"normal_p99_deg", cut->normal_p99_deg}};
     for (const auto& [axis, s] : {std::pair{"upright", cut->x}, {"level", cut->y}}) judge(axis, s);
+    back_.cut(cut->x0, cut->y0);
     surface_ = std::move(cut->surface);
     tile_.reset();
     return found;
   }
 
-  Result<Json> crop(const Json& options) {
+  Result<Json> crop(const Recipe& recipe, std::size_t at) {
+    const Json& options = recipe.steps[at].options;
     const double mm = surface_.mm_per_pixel;
     CropOptions crop = {options["left_mm"], options["top_mm"], options["width_mm"], options["height_mm"]};
     if (crop.width_mm == 0) crop.width_mm = mm * surface_.size().width - crop.left_mm;
@@ -277,8 +392,10 @@ class Finisher {
     Result<Cropped> cropped = material::crop(surface_, crop);
     if (!cropped) return std::move(cropped).error();
     const Rect& part = cropped->part_px;
+    back_.cut(part.x0, part.y0);
     surface_ = std::move(cropped->surface);
     lattice_.reset();
+    if (tile_ && repeats_wanted(recipe, at) == std::array<int, 2>{}) tile_->period_px = {};
     return Json{{"from_px", {part.x0, part.y0}}, {"size_px", {part.width(), part.height()}}};
   }
 
@@ -377,6 +494,9 @@ class Finisher {
   std::optional<Lattice> lattice_;
   std::optional<TilingOptions> tile_;  // of a cloth that was straightened
   bool is_left_turned_ = false;        // straightening was told to, and said why not
+  WayBack back_;
+  bool may_cut_ = false;  // no step from this one on says places
+  bool is_part_ = false;  // it was cut for a preview
 };
 
 }  // namespace
@@ -395,7 +515,7 @@ Result<FinishingFacts> finish_surface(Surface& surface, const Recipe& recipe, co
     }
     finisher.facts.steps.push_back(std::move(*found));
   }
-  return std::move(finisher.facts);
+  return finisher.finish();
 }
 
 }  // namespace weft::material

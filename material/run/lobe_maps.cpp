@@ -25,8 +25,9 @@ using solver::Lobe;
 
 // What an artist would type: that of a pile is matt, since its sheen is no lobe of GGX.
 Lobe typed_lobe(const std::string& cloth) {
-  const Lobe& named =
-      std::ranges::find(calibration::planned_cloths(), cloth, &calibration::NamedCloth::name)->cloth.lobe;
+  const std::vector<calibration::NamedCloth>& cloths = calibration::planned_cloths();
+  const auto known = std::ranges::find(cloths, cloth, &calibration::NamedCloth::name);
+  const Lobe named = known == cloths.end() ? Lobe() : known->cloth.lobe;
   if (named.family != solver::LobeFamily::kLambert && named.family != solver::LobeFamily::kCloth)
     return named;
   return {.family = solver::LobeFamily::kGgx, .alpha = solve::kTypedAlpha, .f0 = solve::kTypedF0};
@@ -38,7 +39,9 @@ double typed_alpha(const std::string& cloth) {
 }
 
 std::string typed_words(const MapWork& work) {
-  return fmt::format("typed for {}, as the photographs do not tell it", work.options.cloth);
+  if (work.options.cloth.empty())
+    return "not known: the photographs do not tell it, and nobody said what kind of cloth it is";
+  return fmt::format("by its kind, {}: the photographs do not tell it", work.options.cloth);
 }
 
 // The geometric mean of both alphas.

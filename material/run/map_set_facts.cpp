@@ -7,6 +7,12 @@
 
 namespace weft::material {
 
+void describe(Fields& fields, FinishedPlace& p) {
+  fields.value({"centre_px", "Their middle: x to the right, y down", {}, kMustSay}, p.centre_px);
+  fields.value({"corners_px", "x and y of each, from the left upper one clockwise", {}, kMustSay},
+               p.corners_px);
+}
+
 void describe(Fields& fields, MapStep& s) {
   fields.keep(s.document);
   fields.value({"do", "Which step; its options stand beside it", {}, kMustSay}, s.name);
@@ -33,7 +39,7 @@ void describe(Fields& fields, DeriveOptions& d) {
   fields.value({"weighs_by_sigma", "Height: each pixel by one over its variance"}, d.weighs_by_sigma);
   fields.value({"cavity_mm", "Radius that a cavity is seen against, mm"}, d.cavity_mm);
   fields.value({"directions", "Of the occlusion's lines"}, d.directions);
-  fields.value({"cloth", "Whose lobe is typed where the photographs tell none"}, d.cloth);
+  fields.value({"cloth", "Whose lobe is typed where the photographs tell none; empty: not known"}, d.cloth);
 }
 
 void describe(Fields& fields, MapSetFacts& f) {
@@ -47,7 +53,17 @@ void describe(Fields& fields, MapSetFacts& f) {
   fields.value({"height", "Of the maps, pixels", kAboveZero, kMustSay}, f.size.height);
   fields.value({"mm_per_pixel", "Side of a pixel, mm", kAboveZero, kMustSay}, f.mm_per_pixel);
   fields.value({"is_tile", "They go on over their borders"}, f.is_tile);
-  fields.value({"preview", "They are coarser than was asked for, to be looked at once"}, f.is_preview);
+  fields.value({"preview", "To be looked at once"}, f.is_preview);
+  fields.object({"place",
+                 "Where they lie in the rectified maps, pixels from their left upper corner",
+                 {},
+                 kUnlessEmpty},
+                f.place);
+  fields.value({"part_mm",
+                "What of a large cloth a preview is of: width and height of the part, then of the cloth",
+                {},
+                kUnlessEmpty},
+               f.part_mm);
   fields.list({"steps", "Of the recipe, in their order"}, f.steps);
   fields.list({"maps", "Those that were derived", {}, kMustSay}, f.maps);
   fields.object({"derive", "How"}, f.derive);

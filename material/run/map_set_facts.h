@@ -34,11 +34,19 @@ struct DeriveOptions {
   bool weighs_by_sigma = false;  ///< height: pixels count by one over the variance of their normal
   double cavity_mm = 2;          ///< radius that a cavity is seen against
   int directions = 8;            ///< of the occlusion's lines, 4 to 64
-  /// Where the photographs do not tell the lobe it is that of this cloth (planned_cloths()).
-  std::string cloth = "cotton";
+  /// Where the photographs do not tell the lobe it is that of this cloth (planned_cloths()); empty: of the
+  /// session's kind of cloth, and where nobody said that, of cotton.
+  std::string cloth;
 };
 /// As documents have them.
 void describe(Fields& fields, DeriveOptions& options);
+
+/// Where finished maps lie in those that they were made of: pixels from the left upper corner, x right and y
+/// down.
+struct FinishedPlace {
+  std::array<double, 2> centre_px = {};
+  std::array<double, 8> corners_px = {};  ///< x and y of each, from the left upper one clockwise
+};
 
 /// A step of the recipe, as it was told.
 struct MapStep {
@@ -68,6 +76,8 @@ struct MapSetFacts {
   Size size;
   double mm_per_pixel = 0;
   bool is_tile = false, is_preview = false;
+  std::optional<FinishedPlace> place = {};  ///< none: of a set that does not say it
+  std::vector<double> part_mm = {};         ///< as FinishingFacts has it
   std::vector<MapStep> steps = {};
   std::vector<MapFacts> maps = {};
   DeriveOptions derive = {};

@@ -15,6 +15,7 @@
 #include "core/describe/field_json.h"
 #include "core/image_io/image_io.h"
 #include "core/rig/calibration.h"
+#include "core/rig/cloth_kinds.h"
 #include "core/rig/session.h"
 #include "core/solve/solve.h"
 #include "material/opacity/fill.h"
@@ -23,6 +24,7 @@
 #include "material/run/light_below.h"
 #include "material/run/map_work.h"
 #include "material/run/maps_page.h"
+#include "material/run/session_sets.h"
 #include "material/run/surface_files.h"
 #include "material/validation/validate.h"
 #include "report/downsampler.h"
@@ -39,6 +41,14 @@ constexpr int kVersion = 3;  // raised whenever the bytes of a map may change
 // What a session holds, as its session.json tells by the digests of its frames; empty where none is named.
 Result<std::string> digest_of(const fs::path& session) {
   return session.empty() ? Result<std::string>(std::string()) : sha256_of_file(session / "session.json");
+}
+
+// What people said of it; empty where they did not.
+std::string cloth_kind_of(const Session& session) {
+  const auto metadata = session.document.find("metadata");
+  const bool is_said = metadata != session.document.end() && metadata->is_object();
+  const std::string kind = is_said ? text_at(*metadata, "kind") : "";
+  return std::ranges::find(kClothKinds, kind) == kClothKinds.end() ? "" : kind;
 }
 
 // Room that maps take at most, bytes a pixel.
@@ -123,7 +133,7 @@ Result<FinishingInput> known_of(const Session& session, const RectifyReport& rec
   const std::optional<SigmaFacts>& sigma = facts->sigma_normal_deg;
   const bool is_told = sigma && sigma->calibration;
   return FinishingInput{.slow_sigma_deg = is_told ? sigma->calibration->median : 0.0,
-                        .coarser = is_preview ? kPreviewFactor : 1};
+                        .most_px = is_preview ? kPreviewPixels : 0};
 }
 
 // A step that may be taken back.
@@ -217,6 +227,8 @@ MapSetFacts facts_of(const Product& product, const RectifyFacts& rectified, cons
                        .mm_per_pixel = surface.mm_per_pixel,
                        .is_tile = surface.is_tile,
                        .is_preview = options.is_preview,
+                       .place = finished.place,
+                       .part_mm = finished.part_mm,
                        .steps = steps_of(options.recipe, finished),
                        .maps = work.made,
                        .derive = options.derive,
@@ -263,13 +275,6 @@ Result<void> check(const MapsOptions& options) {
   return {};
 }
 
-// On the grid that is asked for, or of a preview on a coarser one.
-Result<RectifyReport> rectified_for(const MapsOptions& options, const JobContext& context) {
-  Result<RectifyReport> rectified = rectified_maps(options, options.mm_per_pixel, context);
-  if (!rectified || !options.is_preview) return rectified;
-  return rectified_maps(options, kPreviewFactor * rectified->facts.mm_per_pixel, context);
-}
-
 Result<Product> product_wanted(const MapsOptions& options, const Session& session,
                                const RectifyReport& rectified) {
   Result<std::string> bare = digest_of(options.bare);
@@ -281,7 +286,7 @@ Result<Product> product_wanted(const MapsOptions& options, const Session& sessio
                        {"derive", object_of(options.derive)},
                        {"bare", *bare},
                        {"table_albedo", options.table_albedo},
-                       {"preview", options.is_preview},
+                       {"preview", options.is_preview ? Json(kPreviewPixels) : Json(false)},
                        {"compression", name_of(options.compression)}};
   return product_of(kMapsProduct, inputs, session.folder / "maps", options.output);
 }
@@ -339,22 +344,23 @@ Result<MapSetFacts> make_set(const MapsOptions& options, const Session& session,
 
 }  // namespace
 
-Result<RectifyReport> rectified_maps(const MapsOptions& options, std::optional<double> mm_per_pixel,
-                                     const JobContext& context) {
+Result<RectifyReport> rectified_maps(const MapsOptions& options, const JobContext& context) {
   RectifyOptions rectify;
   rectify.session = options.session;
   rectify.solve = options.solve;
   rectify.is_draft = options.is_draft;
   rectify.calibration = options.calibration;
-  rectify.mm_per_pixel = mm_per_pixel;
+  rectify.mm_per_pixel = options.mm_per_pixel;
   return rectify_session(rectify, context);
 }
 
-Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& context) {
-  if (Result<void> ok = check(options); !ok) return std::move(ok).error();
-  const Result<Session> session = read_session(options.session);
+Result<MapsReport> make_maps(const MapsOptions& wanted, const JobContext& context) {
+  if (Result<void> ok = check(wanted); !ok) return std::move(ok).error();
+  const Result<Session> session = read_session(wanted.session);
   if (!session) return session.error();
-  const Result<RectifyReport> rectified = rectified_for(options, context);
+  MapsOptions options = wanted;
+  if (options.derive.cloth.empty()) options.derive.cloth = cloth_kind_of(*session);
+  const Result<RectifyReport> rectified = rectified_maps(options, context);
   if (!rectified) return rectified.error();
   const Result<Product> product = product_wanted(options, *session, *rectified);
   if (!product) return product.error();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,11 +33,11 @@ struct MapsOptions {
   /// it stays.
   std::vector<double> table_albedo;
   std::optional<double> mm_per_pixel = {};  ///< of the grid; none: what the camera sees
-  bool is_preview = false;                  ///< on a grid kPreviewFactor times as coarse; earlier previews go
+  bool is_preview = false;                  ///< of a part of about kPreviewPixels; earlier previews go
   Compression compression = Compression::kNone;
 };
 
-inline constexpr double kPreviewFactor = 4;
+inline constexpr std::int64_t kPreviewPixels = 1024 * 1024;
 
 /// What making maps left behind.
 struct MapsReport {
@@ -45,10 +46,8 @@ struct MapsReport {
   MapSetFacts facts;       ///< with what is stale of the solve today
 };
 
-/// The maps of the solve on a grid of pixels of this size, none: what the camera sees. Errors of
-/// rectify_session().
-Result<RectifyReport> rectified_maps(const MapsOptions& options, std::optional<double> mm_per_pixel,
-                                     const JobContext& context);
+/// The maps of the solve on the grid that is asked for. Errors of rectify_session().
+Result<RectifyReport> rectified_maps(const MapsOptions& options, const JobContext& context);
 
 /// Puts the maps of a solve on a square grid of the table (rectify_session()), finishes them by the recipe,
 /// derives others, and publishes all of it whole in a folder named by its inputs, with maps.json

@@ -92,7 +92,7 @@ std::size_t chosen_of(const std::vector<MapPrice>& prices, const PriceAims& aims
 }  // namespace
 
 Result<MapPrices> price_maps(const MapsOptions& options, const PriceAims& aims, const JobContext& context) {
-  const Result<RectifyReport> rectified = rectified_maps(options, options.mm_per_pixel, context);
+  const Result<RectifyReport> rectified = rectified_maps(options, context);
   if (!rectified) return rectified.error();
   const Result<RectifiedSurface> read = read_surface(rectified->folder, rectified->facts.mm_per_pixel);
   if (!read) return read.error();

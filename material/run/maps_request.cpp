@@ -44,7 +44,8 @@ void describe_common(Fields& fields, MapsRequest& r) {
   describe_output(fields, r.maps.output, "Folder for the maps; default SESSION/maps/ID");
   describe_grid(fields, r.maps.mm_per_pixel);
   describe_recipe(fields, r);
-  fields.value({"preview", "On a grid four times as coarse; earlier previews go"}, r.maps.is_preview);
+  fields.value({"preview", "Of a large cloth the middle, at its full size; earlier previews go"},
+               r.maps.is_preview);
   describe_compression(fields, r.maps.compression);
   fields.value({.name = "strict",
                 .says = "Exit code 2 where something speaks against the maps",
@@ -59,7 +60,7 @@ void describe_derived(Fields& fields, DeriveOptions& d) {
   fields.value({"cavity_mm", "Radius that a cavity is seen against, mm", {0.01, 1000}}, d.cavity_mm);
   fields.value({"directions", "Of the occlusion's lines, 4 to 64", {4, 64}}, d.directions);
   fields.value({.name = "cloth",
-                .says = "Whose lobe is typed where the photographs tell none",
+                .says = "Whose lobe is typed where the photographs tell none; default the session's kind",
                 .words = calibration::planned_cloth_names()},
                d.cloth);
 }

@@ -16,6 +16,7 @@
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "core/rig/session.h"
+#include "library/catalogue/metadata.h"
 #include "material/run/surface_files.h"
 #include "solve/files/gloss_maps.h"
 #include "solve/run/solve_session.h"
@@ -45,17 +46,18 @@ std::vector<std::string> all_maps() {
   return names;
 }
 
+void scan_and_solve(const std::string& scene, Size size, const fs::path& session) {
+  simulate(scene_named(scene, size), session);
+  solve::SolveOptions options;
+  options.method = "fast";
+  options.previews = false;
+  const auto report = solve::solve_session({.folder = session, .calibration = {}, .leds = {}}, options, {});
+  ASSERT_TRUE(report) << report.error().message();
+}
+
 class Maps : public testing::Test {
  protected:
-  void SetUp() override {
-    simulate(scene_named("twill", {192, 128}), session_);
-    solve::SolveOptions options;
-    options.method = "fast";
-    options.previews = false;
-    const auto report =
-        solve::solve_session({.folder = session_, .calibration = {}, .leds = {}}, options, {});
-    ASSERT_TRUE(report) << report.error().message();
-  }
+  void SetUp() override { scan_and_solve("twill", {192, 128}, session_); }
 
   MapsOptions options(const std::string& steps = "[]") const {
     MapsOptions options;
@@ -159,12 +161,53 @@ TEST_F(Maps, OfAPreviewTakeThePlaceOfTheOneBefore) {
   preview.is_preview = true;
   const MapsReport first = made(preview);
   const MapsReport whole = made(options());
-  EXPECT_NEAR(first.facts.mm_per_pixel / whole.facts.mm_per_pixel, 4, 1e-9);
+  EXPECT_EQ(first.facts.size, whole.facts.size);
+  EXPECT_EQ(first.facts.mm_per_pixel, whole.facts.mm_per_pixel);
   preview.recipe = recipe_of(R"([{"do": "color", "exposure": 1}])");
   const MapsReport second = made(preview);
   EXPECT_FALSE(fs::exists(first.folder));
   EXPECT_TRUE(fs::exists(second.folder));
   EXPECT_TRUE(fs::exists(whole.folder));
+}
+
+// A preview that refuses what the full run does is worse than none, and one that does not is a promise.
+TEST_F(Maps, OfAPreviewComeOutAsThoseOfTheFullRun) {
+  scan_and_solve("knit", {192, 128}, work_ / "knit.weft");
+  scan_and_solve("twill", {96, 64}, work_ / "small.weft");
+  for (const fs::path& session : {session_, work_ / "knit.weft", work_ / "small.weft"}) {
+    for (const char* name : {"tile", "detail"}) {
+      SCOPED_TRACE(session.stem().string() + " " + name);
+      MapsOptions wanted = options();
+      wanted.session = session;
+      wanted.recipe = material::recipe_named(name);
+      const auto full = make_maps(wanted, {});
+      wanted.is_preview = true;
+      const auto preview = make_maps(wanted, {});
+      ASSERT_EQ(preview.has_value(), full.has_value());
+      if (!full) {
+        EXPECT_EQ(preview.error().message(), full.error().message());
+        continue;
+      }
+      Json a = json_of(full->facts), b = json_of(preview->facts);
+      for (Json* each : {&a, &b}) each->erase("id"), each->erase("preview");
+      EXPECT_EQ(a, b);
+    }
+  }
+}
+
+TEST_F(Maps, AssumeTheGlossOfTheSessionsKindOfClothAndSayWhoseItIs) {
+  MapsOptions wanted = options();
+  wanted.maps = {"roughness"};
+  const auto roughness = [&] { return json_of(made(wanted).facts)["maps"][0]; };
+  const Json unknown = roughness();
+  EXPECT_EQ(unknown["source"], "assumed");
+  EXPECT_THAT(unknown["why"].get<std::string>(), HasSubstr("nobody said what kind of cloth"));
+  ASSERT_TRUE(library::change_metadata(session_, {{"kind", "satin"}}));
+  const Json satin = roughness();
+  EXPECT_THAT(satin["why"].get<std::string>(), HasSubstr("by its kind, satin"));
+  EXPECT_LT(satin["constant"].get<double>(), 0.6);
+  wanted.derive.cloth = "cotton";
+  EXPECT_EQ(roughness()["constant"], unknown["constant"]);
 }
 
 TEST_F(Maps, AreRefusedInWordsAndLeaveNothingBehind) {
@@ -368,7 +411,7 @@ TEST_F(Maps, ByTheProgramAreTold) {
   const Outcome outcome =
       run_weft({"maps", session_.string(), "--maps", "height,roughness", "--cloth", "satin", "-q"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
-  EXPECT_THAT(outcome.output, testing::AllOf(HasSubstr("height:"), HasSubstr("typed for satin")));
+  EXPECT_THAT(outcome.output, testing::AllOf(HasSubstr("height:"), HasSubstr("by its kind, satin")));
   expect_refusal(work_, {"maps", session_.string(), "--recipe", "tiel"}, 66, {"tile"});
   expect_refusal(work_, {"finish", session_.string(), "--steps", "{"}, 64, {"--steps"});
   expect_refusal(work_, {"finish", session_.string(), "--steps", R"({"steps": [{"do": "tlie"}]})"}, 65,
