@@ -84,39 +84,52 @@ test('twenty edits are undone, and done again after the daemon and the page bega
   await visitor.leave();
 });
 
-test('a recipe is seen as a preview, and all maps are made of it', async () => {
+const atSet = /viewer\/weave\/maps\/([0-9a-f]+)\?/;
+const ready = (page) => page.locator('canvas[data-ready=true]').waitFor({timeout: making_ms});
+
+test('a recipe is looked at as it is changed, beside the cloth before, and all maps that are made of it open', async () => {
   const visitor = await visit(browser, archive);
   const page = await openFinish(visitor);
+  const {width, height} = await archive.ask(`sessions/weave/solves/${solve}`);
   await page.getByRole('button', {name: 'Recipe flat'}).click();
   assert.deepEqual(await steps(page), ['1 flatten']);
-  await page.getByRole('img', {name: 'Preview, relit'}).waitFor({timeout: making_ms});
-  await page.waitForFunction(() => document.querySelector('.preview img').naturalWidth > 0);
+  await page.waitForURL(/viewer\/weave\/maps\/[0-9a-f]+\?.*divider=0.5/, {timeout: making_ms});
+  await ready(page);
   const preview = await newestJob();
   assert.deepEqual([preview.kind, preview.wants.preview, preview.of], ['finish', true, 'weave']);
   assert.equal(preview.result.preview, true);
+  assert.ok(Math.abs(preview.result.width - width) < 0.05 * width && Math.abs(preview.result.height - height) < 0.05 * height,
+    `${preview.result.width} x ${preview.result.height} of ${width} x ${height}`);
 
   assert.ok(await page.getByRole('button', {name: '1 flatten later'}).isDisabled());
   await add(page, 'color');
   await page.getByRole('button', {name: '2 color earlier'}).click();
   assert.deepEqual(await steps(page), ['1 color', '2 flatten']);
+  const exposure = page.getByLabel('1 color exposure', {exact: true});
+  await exposure.fill('-');
   await until(async () => {
     const {state, result} = await newestJob();
-    return state === 'done' && result.steps.map((step) => step.do).join() === 'color,flatten';
+    return state === 'done' && result.steps.map((step) => step.do).join() === 'color,flatten' && page.url().includes(result.id);
   });
+  assert.equal(await exposure.inputValue(), '-', 'what is typed stays while the picture changes');
+  await exposure.fill('0');
+  await exposure.press('Enter');
   const {sets} = await archive.ask('sessions/weave/maps');
   assert.equal(sets.filter((set) => set.preview).length, 1, 'earlier previews go');
+  await ready(page);
   assert.deepEqual(await violations(page), []);
   await picture(page, 'finish');
 
   await page.getByRole('button', {name: 'Remove 1 color'}).click();
+  const before = page.url();
   await page.getByRole('button', {name: 'Finish: make all maps'}).click();
-  await page.getByRole('button', {name: 'Look at the last ones'}).click({timeout: making_ms});
-  await page.waitForURL(/viewer\/weave\/maps\/[0-9a-f]+\?.*panel=why/);
-  await page.locator('canvas[data-ready=true]').waitFor();
+  await page.waitForURL(/viewer\/weave\/maps\/[0-9a-f]+\?.*panel=why/, {timeout: making_ms});
+  assert.notEqual(page.url().match(atSet)[1], before.match(atSet)[1]);
+  await ready(page);
   await page.getByRole('table', {name: 'Maps'}).getByRole('row', {name: /^height/}).getByText('derived').waitFor();
   await page.keyboard.press('7');
   await page.waitForURL(/layer=height/);
-  await page.locator('canvas[data-ready=true]').waitFor();
+  await ready(page);
   await page.getByText('Height, mm').waitFor();
   assert.equal(await page.getByRole('tab', {name: 'Compare'}).count(), 0);
   assert.deepEqual(await violations(page), []);
@@ -124,7 +137,7 @@ test('a recipe is seen as a preview, and all maps are made of it', async () => {
 
   await page.getByRole('button', {name: '2 × 2'}).click();
   await page.waitForURL(/repeat=2/);
-  await page.locator('canvas[data-ready=true]').waitFor();
+  await ready(page);
   await page.locator('.seam rect').nth(3).waitFor({state: 'attached'});
   assert.equal(await page.locator('.seam rect').count(), 4);
   await page.keyboard.press('t');
@@ -134,23 +147,38 @@ test('a recipe is seen as a preview, and all maps are made of it', async () => {
   await visitor.leave();
 });
 
-test('a tile is seen twice a side, with what is found of its seam', async () => {
+test('a tile is seen twice a side, with its repeat in millimetres on the cloth that it was cut from', async () => {
   const visitor = await visit(browser, archive);
   const page = await openFinish(visitor);
   await page.getByRole('button', {name: 'Recipe tile'}).click();
   assert.deepEqual(await steps(page), ['1 flatten', '2 straighten', '3 tile']);
-  await page.locator('.preview .twice img').nth(3).waitFor({timeout: making_ms});
+  await page.waitForURL(/viewer\/weave\/maps\/[0-9a-f]+\?.*repeat=2/, {timeout: making_ms});
+  await ready(page);
   const {result} = await newestJob();
   assert.equal(result.is_tile, true);
   await page.locator('.finish .facts').getByText(/seam x: /).waitFor();
   for (const {text} of result.verdicts) await page.locator('.finish .verdicts').getByText(text).waitFor();
-  assert.deepEqual(await violations(page), []);
-  await picture(page, 'finish_tile');
-  await page.getByRole('link', {name: 'Look at the preview'}).click();
-  await page.waitForURL(/viewer\/weave\/maps\/[0-9a-f]+\?.*repeat=2/);
-  await page.locator('canvas[data-ready=true]').waitFor();
   await page.locator('.seam rect').nth(3).waitFor({state: 'attached'});
   assert.equal(await page.locator('.seam rect').count(), 4);
+
+  const {repeat} = result.steps[1].facts;
+  await page.locator('.marks text').getByText(`${repeat.across_mm.toFixed(2)} × ${repeat.up_mm.toFixed(2)} mm, ${repeat.angle_deg.toFixed(1)}°`).waitFor();
+  assert.equal(await page.locator('.marks svg :is(polygon, path)').count(), 2);
+  assert.deepEqual(await page.locator('.side-names span').allInnerTexts(), ['before', 'after']);
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'finish_tile');
+
+  const divider = page.getByLabel('Before, after');
+  await divider.focus();
+  await page.keyboard.press('End');
+  await page.waitForURL(/divider=1/);
+  await press(page, 'b', 1);
+  await page.locator('.marks svg').waitFor({state: 'detached'});
+  await press(page, 'b', 1);
+  await page.locator('.marks svg').waitFor();
+
+  await press(page, 'Control+z', 1);
+  await page.waitForURL(new RegExp(`viewer/weave/${solve}`));
   await visitor.leave();
 });
 
@@ -177,5 +205,18 @@ test('of a set of maps a rectangle is a place to crop to', async () => {
   await page.getByRole('button', {name: 'To the rectangle'}).click();
   const width_mm = String(Number((100 * mm_per_pixel).toFixed(3)));
   await page.waitForFunction((typed) => document.querySelector('[aria-label="2 crop width_mm"]').value === typed, width_mm);
+  await visitor.leave();
+});
+
+test('what kind of cloth it is is asked once, kept with the session and said by its maps', async () => {
+  const visitor = await visit(browser, archive);
+  const page = await openFinish(visitor);
+  assert.equal(await page.getByLabel('What kind of cloth is it?').inputValue(), '');
+  await page.getByLabel('What kind of cloth is it?').selectOption('velvet');
+  await until(async () => (await archive.ask('sessions/weave')).said.kind === 'velvet');
+  await page.reload();
+  await until(async () => (await page.getByLabel('What kind of cloth is it?').inputValue()) === 'velvet');
+  await page.getByRole('button', {name: 'Finish: make all maps'}).click();
+  await page.getByRole('table', {name: 'Maps'}).getByRole('row', {name: /^roughness/}).getByText('by its kind, velvet').waitFor({timeout: making_ms});
   await visitor.leave();
 });

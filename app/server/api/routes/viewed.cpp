@@ -94,10 +94,8 @@ Json common_json(const Viewed& viewed) {
                    {"height", viewed.layers.size.height},
                    {"albedo_scale", has_relative_albedo(viewed) ? "relative" : "absolute"},
                    {"warnings", std::move(warnings)}};
-  if (viewed.id == kTruth) return document;
-  document["created"] = written_at(viewed.folder / (viewed.is_build ? material::kMaterialProduct.document
-                                                    : viewed.set    ? material::kMapsProduct.document
-                                                                    : kSolveProduct.document));
+  if (viewed.document.empty()) return document;
+  document["created"] = written_at(viewed.folder / viewed.document);
   document["bytes"] = library::bytes_below(viewed.folder);
   return document;
 }
@@ -161,6 +159,24 @@ std::vector<Rect> beside_cloth(const Calibration& calibration, int pixels_each) 
   return all;
 }
 
+// Those that a set was made of.
+Result<Viewed> rectified_maps(Viewed viewed, const Product& product, Json document) {
+  const Result<material::RectifyFacts> facts =
+      read_fields<material::RectifyFacts>(document, product.kind.document);
+  if (!facts) return facts.error();
+  viewed.mm_per_pixel = facts->mm_per_pixel;
+  viewed.folder = product.folder;
+  viewed.id = product.id;
+  viewed.content = "rectified-" + product.id;
+  viewed.document = product.kind.document;
+  viewed.solve = solve_facts_of(viewed.session, facts->source.solve);
+  Result<Layers> layers = layers_of(viewed.folder);
+  if (!layers) return std::move(layers).error();
+  viewed.layers = std::move(*layers);
+  viewed.set = std::move(document);
+  return viewed;
+}
+
 }  // namespace
 
 double mm_per_pixel_of(const Viewed& viewed) {
@@ -203,6 +219,7 @@ Result<Viewed> find_solve_maps(const RigParts& parts, const std::string& name, c
     if (!facts) return std::move(facts).error();
     viewed.folder = product->folder;
     viewed.id = viewed.content = product->id;
+    viewed.document = product->kind.document;
     viewed.solve = std::move(*facts);
   }
   if (Result<void> ok = add_layers(viewed); !ok) return std::move(ok).error();
@@ -214,9 +231,13 @@ Result<Viewed> find_map_set(const RigParts& parts, const std::string& name, cons
   if (!session) return std::move(session).error();
   Viewed viewed;
   viewed.session = std::move(*session);
-  const Result<Product> product = find_product(material::kMapsProduct, map_sets_of(viewed.session), id);
+  Result<Product> product =
+      find_product(material::kRectifiedProduct, viewed.session.folder / "rectified", id);
+  const bool is_set = !product;
+  if (is_set) product = find_product(material::kMapsProduct, map_sets_of(viewed.session), id);
   Result<Json> document = finished(product, "there is no such set of maps", id);
   if (!document) return std::move(document).error();
+  if (!is_set) return rectified_maps(std::move(viewed), *product, std::move(*document));
   const Result<material::MapSetFacts> facts =
       read_fields<material::MapSetFacts>(*document, material::kMapsProduct.document);
   if (!facts) return facts.error();
@@ -224,6 +245,7 @@ Result<Viewed> find_map_set(const RigParts& parts, const std::string& name, cons
   viewed.folder = product->folder;
   viewed.id = product->id;
   viewed.content = "maps-" + product->id;
+  viewed.document = product->kind.document;
   viewed.set = std::move(*document);
   viewed.solve = solve_facts_of(viewed.session, facts->source.solve);
   if (Result<void> ok = add_layers(viewed); !ok) return std::move(ok).error();
@@ -242,6 +264,7 @@ Result<Viewed> find_built_maps(const RigParts&, const std::string& material, con
   viewed.folder = product->folder;
   viewed.id = product->id;
   viewed.content = "material-" + product->id;
+  viewed.document = product->kind.document;
   viewed.set = std::move(*document);
   viewed.is_build = true;
   if (Result<void> ok = add_layers(viewed); !ok && ok.error().kind != ErrorKind::kNoInput)

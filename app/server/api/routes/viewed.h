@@ -28,7 +28,8 @@ struct Viewed {
   Session session;
   std::filesystem::path folder;
   std::string id;
-  std::string content;  ///< names their bytes
+  std::string content;        ///< names their bytes
+  std::string document = {};  ///< its file in the folder; empty: the truth's, which has none
   std::optional<SolveFacts>
       solve;  ///< that they are, or that a set was made of; none: the truth, or one that is gone
   std::optional<Json> set;  ///< maps.json of a set of maps, material.json of what was built of a material

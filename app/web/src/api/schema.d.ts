@@ -3254,7 +3254,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                 };
                 cookie?: never;
@@ -3318,7 +3318,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                     /** @description As the facts of a step and the checks name it: straighten_2.png */
                     file: string;
@@ -3388,7 +3388,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                     /** @description Name of a layer; relit, the cloth under a lamp; difference, degrees between these normals and those of another solve; albedo_difference, percent of the albedo of another solve */
                     layer: string;
@@ -3529,7 +3529,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                 };
                 cookie?: never;
@@ -3602,7 +3602,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                 };
                 cookie?: never;
@@ -3675,7 +3675,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                 };
                 cookie?: never;
@@ -6383,6 +6383,8 @@ export interface components {
             construction?: string | null;
             /** @description front or back */
             side?: string | null;
+            /** @description cotton, wool, velvet, satin or dark-satin */
+            kind?: string | null;
             notes?: string | null;
             /** @description Indices of shots that no solve shall use */
             left_out?: number[] | null;
@@ -6733,6 +6735,8 @@ export interface components {
             composition: string;
             construction: string;
             side: string;
+            /** @description cotton, wool, velvet, satin or dark-satin; empty: nobody said */
+            kind: string;
             notes: string;
             weight_g_m2: number | null;
             thickness_mm: number | null;
@@ -7459,7 +7463,7 @@ export interface components {
              */
             recipe?: "flat" | "tile" | "detail";
             /**
-             * @description On a grid four times as coarse; earlier previews go
+             * @description Of a large cloth the middle, at its full size; earlier previews go
              * @default false
              */
             preview?: boolean;
@@ -7497,8 +7501,7 @@ export interface components {
              */
             directions?: number;
             /**
-             * @description Whose lobe is typed where the photographs tell none
-             * @default cotton
+             * @description Whose lobe is typed where the photographs tell none; default the session's kind
              * @enum {string}
              */
             cloth?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
@@ -7540,7 +7543,7 @@ export interface components {
              */
             recipe?: "flat" | "tile" | "detail";
             /**
-             * @description On a grid four times as coarse; earlier previews go
+             * @description Of a large cloth the middle, at its full size; earlier previews go
              * @default false
              */
             preview?: boolean;
@@ -7578,8 +7581,7 @@ export interface components {
              */
             directions?: number;
             /**
-             * @description Whose lobe is typed where the photographs tell none
-             * @default cotton
+             * @description Whose lobe is typed where the photographs tell none; default the session's kind
              * @enum {string}
              */
             cloth?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
@@ -7621,7 +7623,7 @@ export interface components {
              */
             recipe?: "flat" | "tile" | "detail";
             /**
-             * @description On a grid four times as coarse; earlier previews go
+             * @description Of a large cloth the middle, at its full size; earlier previews go
              * @default false
              */
             preview?: boolean;

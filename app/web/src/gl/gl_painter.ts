@@ -105,7 +105,7 @@ export class GlPainter extends Painter {
       const texture = this.store.get(addressOf(sheet, tile));
       if (!texture) continue;
       names.push(addressOf(sheet, tile));
-      for (const offset of repeats(pyramid.size, scene.repeat)) {
+      for (const offset of repeats(pyramid, scene.repeat)) {
         list.push({
           tile: texture,
           to: boxOnCanvas(tileBox(pyramid, tile), offset, scene.view, canvas),

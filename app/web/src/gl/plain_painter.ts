@@ -98,7 +98,7 @@ export class PlainPainter extends Painter {
     for (const tile of drawnOf(sheet.pyramid, scene, canvas, (each) => tileAt(each) !== undefined)) {
       const picture = tileAt(tile);
       if (!picture) continue;
-      for (const offset of repeats(sheet.pyramid.size, scene.repeat)) {
+      for (const offset of repeats(sheet.pyramid, scene.repeat)) {
         const to = boxOnCanvas(tileBox(sheet.pyramid, tile), offset, scene.view, canvas);
         this.context.drawImage(picture, to.x, to.y, clamp(to.width, 1, Infinity), clamp(to.height, 1, Infinity));
       }

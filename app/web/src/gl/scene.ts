@@ -115,7 +115,7 @@ function above({level, column, row}: Tile): Tile {
 /** What is drawn of a sheet: the wanted tiles that are there, and below each gap the finest coarser one. */
 export function drawnOf(pyramid: Pyramid, scene: Scene, canvas: Size, is_there: (tile: Tile) => boolean): Tile[] {
   const {view, repeat} = scene;
-  const wanted = tilesInView(pyramid, levelFor(pyramid, view.zoom), view, canvas, repeats(pyramid.size, repeat));
+  const wanted = tilesInView(pyramid, levelFor(pyramid, view.zoom), view, canvas, repeats(pyramid, repeat));
   const below = new Map<string, Tile>();
   for (const gap of wanted.filter((tile) => !is_there(tile))) {
     let tile = above(gap);
@@ -130,7 +130,7 @@ export function addressesOf(sheets: readonly Sheet[], scene: Scene, canvas: Size
   const overviews: string[] = [];
   const tiles: {address: string; turn: number}[] = [];
   for (const sheet of sheets) {
-    const wanted = wantedOf(sheet.pyramid, scene.view, canvas, repeats(sheet.pyramid.size, scene.repeat));
+    const wanted = wantedOf(sheet.pyramid, scene.view, canvas, repeats(sheet.pyramid, scene.repeat));
     overviews.push(addressOf(sheet, wanted.overview, form));
     wanted.tiles.forEach((tile, turn) => tiles.push({address: addressOf(sheet, tile, form), turn}));
   }

@@ -7,6 +7,8 @@ export interface Pyramid {
   size: Size;
   side: number;
   levels: number;
+  /** Where it lies, once, on the map that is seen; none: it is that map. */
+  at?: Point;
 }
 
 export interface Tile {
@@ -89,7 +91,8 @@ export type Repeat = 1 | 2 | 3;
 const stepsOf: Record<Repeat, number[]> = {1: [0], 2: [0, 1], 3: [-1, 0, 1]};
 
 /** Where maps lie that are repeated `count` times a side, of three around the first, which stays at 0, 0. */
-export function repeats(size: Size, count: Repeat): Point[] {
+export function repeats({size, at}: Pick<Pyramid, 'size' | 'at'>, count: Repeat): Point[] {
+  if (at) return [at];
   const steps = stepsOf[count];
   return steps.flatMap((row) => steps.map((column) => ({x: column * size.width, y: row * size.height})));
 }

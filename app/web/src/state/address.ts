@@ -11,16 +11,15 @@ function arrive(): void {
   place.value = placeOf(new URL(location.href));
 }
 
-/** To another place, which Back leaves again. */
-export function go(path: string): void {
-  history.pushState(null, '', path);
+/** To another place, which Back leaves again unless it stands for this one. */
+export function go(path: string, replace = false): void {
+  history[replace ? 'replaceState' : 'pushState'](null, '', path);
   arrive();
 }
 
 /** The same place by its whole path. */
 export function become(path: string): void {
-  history.replaceState(null, '', path + location.search);
-  arrive();
+  go(path + location.search, true);
 }
 
 /** The query of this place with some of its words changed (null: taken out). */

@@ -40,10 +40,14 @@ test('no tile is wanted of what lies beyond the map', () => {
 
 test('a map that is repeated asks for each tile once', () => {
   const small: Pyramid = {size: {width: 600, height: 400}, side: 512, levels: 2};
-  const offsets = repeats(small.size, 3);
+  const offsets = repeats(small, 3);
   expect(offsets.length).toBe(9);
   const tiles = tilesInView(small, 0, {x: 300, y: 200, zoom: 1}, canvas, offsets);
   expect(tiles.map(({column, row}) => `${column}_${row}`).sort()).toEqual(['0_0', '1_0']);
+});
+
+test('a map that lies on another is seen once, where it lies', () => {
+  expect(repeats({size: {width: 600, height: 400}, at: {x: -20, y: 30}}, 2)).toEqual([{x: -20, y: 30}]);
 });
 
 test('neighbours share their edge on the canvas at any zoom', () => {

@@ -50,8 +50,9 @@ export function usePreview(of: Of, recipe: Recipe): Preview {
     if (recipe.length === 0) return undefined;
     let queued = '';
     let isOld = false;
+    setComplaint(null);
+    setId('');
     const begin = async () => {
-      setComplaint(null);
       const job = await queueJob(requestOf(of, recipe, true));
       queued = job.id;
       if (isOld) return giveUp(queued);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finishing: what is done to the maps of a solve step by step, with a preview of it, and all maps in the end.
 import './finish.css';
-import {useEffect, useMemo, useState} from 'preact/hooks';
-import {answer, api} from '../../api/client';
+import {useEffect, useMemo, useRef, useState} from 'preact/hooks';
+import {answer, api, asApiError} from '../../api/client';
+import type {Repeat} from '../../gl/tiles';
 import {go} from '../../state/address';
 import {formOf} from '../../state/forms';
 import {useKeys} from '../../state/keys';
@@ -11,25 +12,27 @@ import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
-import {isFields, textIn} from '../../ui/fields';
+import {fieldsOf, listIn, numberIn, textIn} from '../../ui/fields';
 import {Mark} from '../../ui/mark';
-import type {Wish} from '../../ui/request_schema';
+import {type Wish, wordsOf} from '../../ui/request_schema';
 import {More} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
 import {cancel, jobs, queueJob, useJobs} from '../jobs/jobs';
 import {errorOf} from '../jobs/price';
-import {hasEnded} from '../jobs/queue';
-import {addressOfViewer, FIRST_SIGHT} from '../viewer/sight';
+import {hasEnded, type Job} from '../jobs/queue';
+import type {Maps} from '../viewer/maps';
+import {addressOfViewer, FIRST_SIGHT, type SolveName, textOf} from '../viewer/sight';
 import type {Viewer} from '../viewer/viewer';
 import {StepFacts, StepPictures, Verdicts} from './found';
 import {type Of, requestOf, usePreview} from './making';
-import {PreviewView} from './preview_view';
 import {Draft, keysOfBox, moved, type Recipe, recipeOfSet, type Recipes, type Spot, type Step, stepOf, withKeys, without} from './recipe';
 import {StepForm} from './step_form';
 
 export function FinishPanel({viewer}: {viewer: Viewer}) {
   useJobs();
-  const maps = viewer.maps.value;
+  // The panel stays as it is while what it made is fetched.
+  const last = useRef<Maps | null>(null);
+  const maps = (last.current = viewer.maps.value ?? last.current);
   const [recipes, setRecipes] = useState<Recipes | null>(null);
   const ask = useAction(async () => setRecipes(await answer(api.GET('/api/v1/recipes'))));
   useEffect(() => void ask.run(), []);
@@ -38,26 +41,43 @@ export function FinishPanel({viewer}: {viewer: Viewer}) {
     <section class="finish">
       <h2>Finish</h2>
       <Complaint error={ask.complaint} />
-      {maps && recipes && <Finishing viewer={viewer} set={maps.solve.set} recipes={recipes} />}
+      {maps && recipes && <Finishing viewer={viewer} maps={maps} recipes={recipes} />}
     </section>
   );
 }
 
 interface FinishingProps {
   viewer: Viewer;
-  /** The maps.json of what is looked at, where that is a set. */
-  set: unknown;
+  /** What is looked at. */
+  maps: Maps;
   recipes: Recipes;
 }
 
-function Finishing({viewer, set, recipes}: FinishingProps) {
-  const {session, solve} = viewer.name;
+function Finishing({viewer, maps: {name, solve: {method, set, width, height}}, recipes}: FinishingProps) {
+  const {session} = name;
   const [isDraft, setIsDraft] = useState(false);
-  const isPreview = viewer.maps.value?.solve.method === 'preview';
-  const of = {session, solve: viewer.name.isSet ? textIn(set, 'solve') : solve, isDraft: isPreview && isDraft};
+  const isPreview = method === 'preview';
+  const of = {session, solve: name.isSet ? textIn(set, 'solve') : name.solve, isDraft: isPreview && isDraft};
   const draft = useMemo(() => new Draft(session, recipeOfSet(set)), [session]);
   const {past, now, future} = draft.history.value;
   const preview = usePreview(of, now);
+  const {job, document} = preview;
+  const [across, down, ofAcross, ofDown] = listIn(document, 'part_mm').map((mm) => Number(mm).toFixed());
+  const [kept] = useState(now);
+  const made = textIn(document, 'id');
+  const isLooking = fieldsOf(set)['preview'] === true;
+  const look: SolveName | null = now.length === 0 ? isLooking ? {session, solve: of.solve} : null : made ? {session, solve: made, isSet: true} : null;
+  const lookThere = () => {
+    const sight = viewer.sight.value;
+    const isSameSize = numberIn(document, 'width') === width && numberIn(document, 'height') === height;
+    const repeat = fieldsOf(document)['is_tile'] === true ? Math.max(2, sight.repeat) as Repeat : 1;
+    const divider = !look?.isSet ? null : isLooking ? sight.divider : 0.5;
+    if (look) go(addressOfViewer(look, {...(isSameSize ? sight : FIRST_SIGHT), light: sight.light, layer: sight.layer, panel: 'finish', divider, repeat}), isLooking);
+  };
+  // What is made of a change is looked at; nobody is led away from what he came for.
+  useEffect(() => {
+    if (isLooking || now !== kept) lookThere();
+  }, [look && textOf(look)]);
   useKeys('viewer', [
     {key: 'Ctrl+z', does: 'undo a change of the recipe', run: () => draft.undo()},
     {key: 'Ctrl+y', does: 'redo it', run: () => draft.redo()},
@@ -78,16 +98,19 @@ function Finishing({viewer, set, recipes}: FinishingProps) {
         <Button kind="quiet" keyHint="Ctrl+z" isDisabled={past.length === 0} onClick={() => draft.undo()}>Undo</Button>
         <Button kind="quiet" keyHint="Ctrl+y" isDisabled={future.length === 0} onClick={() => draft.redo()}>Redo</Button>
       </div>
-      <PreviewView session={session} preview={preview} />
-      <Complaint error={preview.complaint ?? (preview.job?.state === 'failed' ? errorOf(preview.job) : null)} />
+      {job && <Progress label="Preview" job={job} />}
+      {across && <p>Preview of the middle: {across} × {down} of {ofAcross} × {ofDown} mm</p>}
+      {made && !isLooking && <Button onClick={lookThere}>Look at the preview</Button>}
+      <Complaint error={preview.complaint ?? (job?.state === 'failed' ? errorOf(job) : null)} />
       <Steps viewer={viewer} recipe={now} recipes={recipes} onChange={(recipe) => draft.change(recipe)} />
-      {isFields(preview.document) && (
+      {made && (
         <>
-          <Verdicts document={preview.document} />
-          <StepPictures of={{session, solve: textIn(preview.document, 'id'), isSet: true}} document={preview.document} />
-          <StepFacts document={preview.document} />
+          <Verdicts document={document} />
+          <StepPictures of={{session, solve: made, isSet: true}} document={document} />
+          <StepFacts document={document} />
         </>
       )}
+      <ClothKind viewer={viewer} />
       <MakeAll of={of} recipe={now} />
     </>
   );
@@ -129,31 +152,54 @@ function Steps({viewer, recipe, recipes, onChange}: StepsProps) {
   );
 }
 
-const saidHere = ['session', 'solve', 'draft', 'recipe', 'steps', 'preview'];
+const saidHere = ['session', 'solve', 'draft', 'recipe', 'steps', 'preview', 'cloth'];
+
+/** What the cloth is, which maps take for what its photographs do not tell: asked once, and kept with the session. */
+function ClothKind({viewer}: {viewer: Viewer}) {
+  const params = {path: {name: viewer.name.session}};
+  const [kind, setKind] = useState('');
+  const complain = (error: unknown) => (viewer.complaint.value = asApiError(error));
+  useEffect(() => {
+    answer(api.GET('/api/v1/sessions/{name}', {params})).then(({said}) => setKind(textIn(said, 'kind')), complain);
+  }, []);
+  const say = (to: string) => {
+    setKind(to);
+    answer(api.PATCH('/api/v1/sessions/{name}/metadata', {params, body: {kind: to || null}})).catch(complain);
+  };
+  const kinds = wordsOf(formOf('maps'), 'cloth').map((value) => ({value, says: value}));
+  return <Choice label="What kind of cloth is it?" value={kind} options={[{value: '', says: 'not said'}, ...kinds]} onChange={say} />;
+}
+
+function Progress({label, job}: {label: string; job: Job}) {
+  if (hasEnded(job)) return null;
+  return (
+    <div class="row">
+      <Mark verdict={job.held ? 'waiting' : 'busy'}>{job.phase || 'waits its turn'}</Mark>
+      <Share label={label} share={job.share} left_s={job.left_s} />
+      <Button onClick={() => void cancel(job.id)}>Cancel</Button>
+    </div>
+  );
+}
 
 /** All maps, at the size of the photographs. */
 function MakeAll({of, recipe}: {of: Of; recipe: Recipe}) {
   const [wish, setWish] = useState<Wish>({});
-  const make = useAction(() => queueJob({...requestOf(of, recipe, false), ...wish}));
+  const [begun, setBegun] = useState('');
+  const make = useAction(async () => setBegun((await queueJob({...requestOf(of, recipe, false), ...wish})).id));
   const job = jobs.value.find(({kind, of: session}) => kind === 'maps' && session === of.session);
   const isBusy = job !== undefined && !hasEnded(job);
-  const id = textIn(job?.result, 'id');
+  const made = job?.id === begun && job.state === 'done' ? job.result : null;
+  useEffect(() => {
+    const repeat = fieldsOf(made)['is_tile'] === true ? 2 : 1;
+    if (made) go(addressOfViewer({session: of.session, solve: textIn(made, 'id'), isSet: true}, {...FIRST_SIGHT, panel: 'why', repeat}));
+  }, [made]);
   return (
     <>
       <More of="the maps" schema={formOf('maps')} wish={wish} onWish={setWish} without={saidHere} />
       <div class="row">
         <Button kind="main" isDisabled={make.isBusy || isBusy} onClick={() => void make.run()}>Finish: make all maps</Button>
-        {job?.state === 'done' && id && (
-          <Button onClick={() => go(addressOfViewer({session: of.session, solve: id, isSet: true}, {...FIRST_SIGHT, panel: 'why'}))}>Look at the last ones</Button>
-        )}
       </div>
-      {isBusy && (
-        <div class="row">
-          <Mark verdict={job.held ? 'waiting' : 'busy'}>{job.phase || 'waits its turn'}</Mark>
-          <Share label="Maps" share={job.share} left_s={job.left_s} />
-          <Button onClick={() => void cancel(job.id)}>Cancel</Button>
-        </div>
-      )}
+      {job && <Progress label="Maps" job={job} />}
       <Complaint error={make.complaint ?? (job?.state === 'failed' ? errorOf(job) : null)} />
     </>
   );

@@ -6,7 +6,7 @@ import {numberIn, textIn, textsIn} from '../../ui/fields';
 export type Summary = Schemas['Summary'];
 export type MetadataChange = Schemas['MetadataChange'];
 
-const texts = ['fabric', 'id', 'composition', 'construction', 'side', 'notes'] as const;
+const texts = ['fabric', 'id', 'composition', 'construction', 'side', 'kind', 'notes'] as const;
 const numbers = ['weight_g_m2', 'thickness_mm'] as const;
 
 export type FormField = (typeof texts)[number] | (typeof numbers)[number];
@@ -18,6 +18,7 @@ export const fields: {field: FormField; label: string; unit?: string}[] = [
   {field: 'composition', label: 'Composition'},
   {field: 'construction', label: 'Construction'},
   {field: 'side', label: 'Side'},
+  {field: 'kind', label: 'Kind'},
   {field: 'weight_g_m2', label: 'Weight', unit: 'g/m²'},
   {field: 'thickness_mm', label: 'Thickness', unit: 'mm'},
   {field: 'notes', label: 'Notes'},
@@ -35,6 +36,7 @@ export function saidOf({fabric, said}: Schemas['Session']): Said | null {
     composition: textIn(said, 'composition'),
     construction: textIn(said, 'construction'),
     side: textIn(said, 'side'),
+    kind: textIn(said, 'kind'),
     notes: textIn(said, 'notes'),
     weight_g_m2: numberIn(said, 'weight_g_m2'),
     thickness_mm: numberIn(said, 'thickness_mm'),
@@ -51,6 +53,7 @@ export function formOf(session: Said): MetadataTexts {
     composition: session.composition,
     construction: session.construction,
     side: session.side,
+    kind: session.kind,
     notes: session.notes,
     weight_g_m2: number(session.weight_g_m2),
     thickness_mm: number(session.thickness_mm),

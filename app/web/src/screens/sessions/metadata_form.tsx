@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is said of a cloth. A change is one step, which can be undone; nobody's change is written over.
 import {useState} from 'preact/hooks';
+import {formOf as formOfJob} from '../../state/forms';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
+import {wordsOf} from '../../ui/request_schema';
 import {change} from './edits';
 import {changeBetween, fields, formOf, problemWith, tagsIn, withTags, withoutTag, type Said} from './metadata';
 import {tags} from './shelf';
@@ -34,7 +36,7 @@ export function MetadataForm({name, said, onChanged}: MetadataFormProps) {
     <section class="panel metadata" aria-labelledby="metadata-title">
       <h2 id="metadata-title">Cloth</h2>
       {fields.map(({field, label, unit}) => (
-        <Field key={field} label={label} unit={unit} value={form[field]} hint={problemWith(field, form[field])} onEnter={enter}
+        <Field key={field} label={label} unit={unit} value={form[field]} hint={problemWith(field, form[field])} onEnter={enter} list={field === 'kind' ? wordsOf(formOfJob('maps'), 'cloth') : undefined}
           onInput={(value) => setForm({...form, [field]: value})} />
       ))}
       <div class="tags">

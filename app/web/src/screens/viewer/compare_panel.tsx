@@ -77,7 +77,7 @@ function obstacle(viewer: Viewer): string {
 }
 
 export function toggleDivider(viewer: Viewer): void {
-  if (!viewer.other.value || obstacle(viewer)) return;
+  if (!viewer.before.value && (!viewer.other.value || obstacle(viewer))) return;
   viewer.see({divider: viewer.sight.value.divider === null ? 0.5 : null}, 'step');
 }
 
@@ -98,14 +98,20 @@ function Ways({viewer}: {viewer: Viewer}) {
         ))}
       </div>
       {why && <p class="dim">{why}</p>}
-      {divider !== null && (
-        <div class="field">
-          <label for="divider">Divider: this solve left, the other right</label>
-          <input id="divider" type="range" min={0} max={1} step={0.005} value={divider}
-            onInput={(event) => viewer.see({divider: event.currentTarget.valueAsNumber})} />
-        </div>
-      )}
+      <Divider viewer={viewer} says="Divider: this solve left, the other right" />
     </>
+  );
+}
+
+export function Divider({viewer, says}: {viewer: Viewer; says: string}) {
+  const {divider} = viewer.sight.value;
+  if (divider === null) return null;
+  return (
+    <div class="field">
+      <label for="divider">{says}</label>
+      <input id="divider" type="range" min={0} max={1} step={0.005} value={divider}
+        onInput={(event) => viewer.see({divider: event.currentTarget.valueAsNumber})} />
+    </div>
   );
 }
 

@@ -3,6 +3,7 @@
 import {type Repeat, repeats} from '../../gl/tiles';
 import {type Point, type Size, type View, toCanvas} from '../../gl/view';
 import {clothOf} from '../../state/cloths';
+import {fieldsOf, isFields, listIn, numberIn} from '../../ui/fields';
 import {scaleBar, zoomInWords} from './bars';
 import {placeOf} from './light';
 import {type Maps, solveInWords} from './maps';
@@ -56,11 +57,36 @@ export function LampMark({viewer, density}: {viewer: Viewer; density: number}) {
 function Seam({map, count, view, canvas}: {map: Size; count: Repeat; view: View; canvas: Size}) {
   return (
     <g class="seam">
-      {repeats(map, count).map((offset) => {
+      {repeats({size: map}, count).map((offset) => {
         const at = toCanvas(offset, view, canvas);
         return <rect key={`${offset.x},${offset.y}`} x={at.x} y={at.y} width={map.width * view.zoom} height={map.height * view.zoom} />;
       })}
     </g>
+  );
+}
+
+/** On the cloth before its finish the repeat that was found, by its lengths and its angle, and what was cut. */
+function Found({viewer, map, view, canvas}: {viewer: Viewer; map: Maps['solve']; view: View; canvas: Size}) {
+  const at = viewer.before.value;
+  if (!at) return null;
+  const {x, y} = toCanvas(at, view, canvas);
+  const found = listIn(map.set, 'steps').map((step) => fieldsOf(fieldsOf(step)['facts'])['repeat']).find(isFields);
+  const [ax, ay] = listIn(found, 'across_px') as [number, number];
+  const [bx, by] = (found?.['up_px'] ?? [4 * ay, -4 * ax]) as [number, number];
+  const from = {x: map.width / 4 - at.x, y: map.height / 2 - at.y};
+  const say = (key: string, decimals = 2) => numberIn(found, key)?.toFixed(decimals);
+  return (
+    <svg width={viewer.sight.value.divider! * canvas.width} height={canvas.height}>
+      <g transform={`translate(${x} ${y}) scale(${view.zoom})`}>
+        <polygon points={at.corners.join(' ')} />
+        {found && <path d={`M${from.x} ${from.y}l${ax} ${ay}l${bx} ${by}l${-ax} ${-ay}Z`} />}
+      </g>
+      {found && (
+        <text x={x + from.x * view.zoom} y={y + from.y * view.zoom + 20}>
+          {say('across_mm')}{found['up_mm'] ? ` × ${say('up_mm')} mm, ${say('angle_deg', 1)}°` : ' mm'}
+        </text>
+      )}
+    </svg>
   );
 }
 
@@ -81,6 +107,7 @@ export function Marks({viewer}: {viewer: Viewer}) {
       {line && <Ruler ends={[centreOf(line[0], view, canvas), centreOf(line[1], view, canvas)]} />}
       {pixel && <HeldPixel at={centreOf(pixel, view, canvas)} side={view.zoom} />}
       {mark && <PencilMark at={toCanvas(mark, view, canvas)} />}
+      {isDivided && <Found viewer={viewer} map={map} view={view} canvas={canvas} />}
       {isDivided && <line class="divider" x1={divider * canvas.width} y1={0} x2={divider * canvas.width} y2={canvas.height} />}
     </svg>
   );
@@ -93,8 +120,8 @@ export function SideNames({viewer}: {viewer: Viewer}) {
   if (!maps || !other || (viewer.scene.value?.sides.length ?? 0) < 2) return null;
   return (
     <div class="side-names">
-      <span>{nameOf(maps, other)}</span>
-      <span>{nameOf(other, maps)}</span>
+      <span>{viewer.before.value ? 'before' : nameOf(maps, other)}</span>
+      <span>{viewer.before.value ? 'after' : nameOf(other, maps)}</span>
     </div>
   );
 }

@@ -8,7 +8,7 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import type {PictureCanvas} from './canvas';
-import {toggleDifference, toggleDivider} from './compare_panel';
+import {Divider, toggleDifference, toggleDivider} from './compare_panel';
 import {measure} from './hand';
 import {DIFFERENCES, LAYERS} from './layers';
 import {nudged} from './light';
@@ -128,7 +128,7 @@ export function useViewerKeys(viewer: Viewer, {previous, next}: Neighbours): voi
 
 export function Toolbar({viewer, picture}: {viewer: Viewer; picture: PictureCanvas | null}) {
   const tool = viewer.tool.value;
-  const {repeat, seam} = viewer.sight.value;
+  const {divider, repeat, seam} = viewer.sight.value;
   const take = useAction(async () => {
     if (picture) save(await snapshot(viewer, picture), `${viewer.name.session}-${viewer.sight.value.layer}.png`);
   });
@@ -148,6 +148,12 @@ export function Toolbar({viewer, picture}: {viewer: Viewer; picture: PictureCanv
         <Button kind="quiet" keyHint="t" isPressed={repeat === 3} onClick={() => tile(viewer, 3)}>3 × 3</Button>
         {repeat > 1 && <Button kind="quiet" isPressed={seam} onClick={() => viewer.see({seam: !seam}, 'step')}>Seam</Button>}
       </div>
+      {viewer.before.value && (
+        <div class="row">
+          <Button keyHint="b" isPressed={divider !== null} onClick={() => toggleDivider(viewer)}>Before</Button>
+          <Divider viewer={viewer} says="Before, after" />
+        </div>
+      )}
       <div class="row">
         <Button kind="quiet" isDisabled={!picture || take.isBusy} onClick={() => void take.run()}>Snapshot</Button>
         <Copy text={location.origin + addressOfViewer(viewer.name, viewer.sight.value)} what="Copy address" />

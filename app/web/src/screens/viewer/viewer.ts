@@ -3,6 +3,7 @@
 import {batch, computed, effect, signal, type Signal} from '@preact/signals';
 import {answer, api, type ApiError, asApiError, type Schemas} from '../../api/client';
 import type {Scene, Side, Vector} from '../../gl/scene';
+import {fieldsOf, listIn, textIn} from '../../ui/fields';
 import {type Box, type Point, type Size, type View, clamp, fitted, held} from '../../gl/view';
 import {amend, place} from '../../state/address';
 import {beginsAtZero, bitColour, bitsOf, fullScale, hasScale, isDifference, isThere} from './layers';
@@ -68,7 +69,7 @@ export class Viewer {
     void this.load(name, this.maps);
     this.ends.push(
       effect(() => this.followPlace(place.value.query)),
-      effect(() => this.followOther(this.sight.value.other)),
+      effect(() => this.followOther(this.beside.value)),
       effect(() => this.followPixel(this.sight.value.pixel)),
       effect(() => {
         if (this.needsWhole.value) void this.askWhole();
@@ -91,6 +92,21 @@ export class Viewer {
     const canvas = this.canvas.value;
     if (!maps || canvas.width === 0) return null;
     return this.sight.value.view ?? fitted(maps.solve, canvas);
+  });
+
+  /** Where the cloth before its finish lies on the maps of a set, and on that cloth the corners of the maps; null: nobody knows. */
+  readonly before = computed<(Point & {corners: unknown[]}) | null>(() => {
+    const solve = this.maps.value?.solve;
+    const place = fieldsOf(solve?.set)['place'];
+    const [x, y] = listIn(place, 'centre_px') as number[];
+    return solve && x !== undefined && y !== undefined ? {x: solve.width / 2 - x, y: solve.height / 2 - y, corners: listIn(place, 'corners_px')} : null;
+  });
+
+  /** What may be seen beside the maps: another solve, and of a set, which lies on a grid of its own, what it was made of. */
+  private readonly beside = computed<SolveName | null>(() => {
+    const {divider, other} = this.sight.value;
+    if (!this.name.isSet) return other;
+    return divider === null || !this.before.value ? null : {...this.name, solve: textIn(this.maps.value?.solve.set, 'rectified')};
   });
 
   readonly panel = computed(() => this.sight.value.panel);
@@ -189,9 +205,7 @@ export class Viewer {
     this.sight.value = said;
   }
 
-  /** A set of maps lies on a grid of its own: it is compared with nothing. */
   private followOther(name: SolveName | null): void {
-    if (this.name.isSet) return;
     const known = this.other.peek()?.name;
     if (name?.session === known?.session && name?.solve === known?.solve) return;
     this.other.value = null;
@@ -210,7 +224,7 @@ export class Viewer {
       if (this.isClosed) return;
       into.value = maps;
       const first = this.maps.peek();
-      if (into === this.other && (!first || isSameSize(first, maps))) await this.compare(name);
+      if (into === this.other && !name.isSet && (!first || isSameSize(first, maps))) await this.compare(name);
     } catch (error) {
       this.complaint.value = asApiError(error);
     }
@@ -231,8 +245,10 @@ export class Viewer {
     if (isDifference(layer) && (!other || !isSameSize(maps, other))) return [];
     const first = sideOf(maps, layer, this.bits.value, this.sight.value.other);
     if (!first) return [];
-    const isDivided = divider !== null && !isDifference(layer) && other && isSameSize(maps, other);
+    const at = this.before.value;
+    const isDivided = divider !== null && !isDifference(layer) && other && (at || isSameSize(maps, other));
     const second = isDivided ? sideOf(other, layer, this.bits.value, null) : null;
+    if (second && at) return [{...second, gain: first.gain, pyramid: {...second.pyramid, at}}, first];
     return second ? [first, second] : [first];
   }
 

@@ -36,7 +36,7 @@ export default function ViewerScreen() {
   const [session] = parts;
   if (session === undefined) return <NoSession />;
   const name = nameOf(parts);
-  return name ? <Viewing key={parts.join('/')} name={name} /> : <CurrentSolve key={session} session={session} />;
+  return name ? <Viewing key={session} name={name} /> : <CurrentSolve key={session} session={session} />;
 }
 
 function noSolveOf(session: string): ApiError {
@@ -65,7 +65,8 @@ async function neighbour(session: string, step: 1 | -1): Promise<SolveName | nul
 }
 
 function Viewing({name}: {name: SolveName}) {
-  const viewer = useMemo(() => new Viewer(name), []);
+  const words = textOf(name);
+  const viewer = useMemo(() => new Viewer(name), [words]);
   const [picture, setPicture] = useState<PictureCanvas | null>(null);
   useEffect(() => () => viewer.close(), [viewer]);
   const turn = (step: 1 | -1) => {
@@ -80,14 +81,14 @@ function Viewing({name}: {name: SolveName}) {
     <div class="viewer">
       <div class="stage">
         <Toolbar viewer={viewer} picture={picture} />
-        <Picture viewer={viewer} onCanvas={setPicture} />
+        <Picture key={words} viewer={viewer} onCanvas={setPicture} />
         <StatusLine viewer={viewer} />
       </div>
       <aside aria-label="What is seen">
         <Head viewer={viewer} />
         <Complaint error={viewer.complaint.value} />
         <Tabs label="Panels" value={viewer.panel.value} options={panelsOf(name)} onChange={(panel) => viewer.see({panel})}>
-          <Chosen viewer={viewer} panel={viewer.panel.value} />
+          <Chosen key={viewer.panel.value === 'finish' ? '' : words} viewer={viewer} panel={viewer.panel.value} />
         </Tabs>
       </aside>
     </div>
@@ -117,7 +118,7 @@ function StatusLine({viewer}: {viewer: Viewer}) {
 
 const names: Record<ViewerPanel, string> = {look: 'Look', pixel: 'Pixel', measure: 'Measure', compare: 'Compare', why: 'Why', finish: 'Finish'};
 
-/** A set of maps lies on a grid of its own, so that it is compared with nothing. */
+/** A set of maps lies on a grid of its own, so that it is compared with no other. */
 function panelsOf({isSet}: SolveName) {
   return VIEWER_PANELS.filter((panel) => !(isSet && panel === 'compare')).map((value) => ({value, says: names[value]}));
 }
