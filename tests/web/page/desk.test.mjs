@@ -182,7 +182,7 @@ test("the day's scans stand in the library, relit", async () => {
   const page = await visitor.open(`${rig.address}/sessions`);
   const [{name}] = complete;
   const newest = page.locator('.session').filter({hasText: name});
-  await newest.getByText(/^[1-9]\d* solve/).waitFor();
+  await newest.locator('img[src$="/swatch.jpg"]').waitFor();
   await page.waitForFunction((count) => {
     const pictures = [...document.querySelectorAll('.session img')];
     return pictures.length === count && pictures.every((one) => one.naturalWidth > 0);
