@@ -268,6 +268,17 @@ test('one button makes the maps and the export of a scan that has but a preview'
   await visitor.leave();
 });
 
+test('two that were solved at different sizes say theirs, by name', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor, 'sessions?words=madder');
+  const preview = page.locator('.session').filter({hasText: 'madder again'});
+  await preview.locator('a').dragTo(rowOf(page, scanned));
+  await page.getByText(/madder again has \d+ × \d+ pixels, madder twill has \d+ × \d+ pixels: solve both at one level/).waitFor();
+  assert.deepEqual(await page.getByRole('alert').count(), 0, 'it is no error');
+  assert.deepEqual(await violations(page), []);
+  await visitor.leave();
+});
+
 test('twenty edits are undone after the daemon was restarted', async () => {
   const visitor = await visit(browser, rig);
   visitor.mayFail(/net::ERR_/);
