@@ -152,7 +152,7 @@ export function Frame({children}: {children: ComponentChildren}) {
   return (
     <>
       <header>
-        <a class="mark-of-weft" href="/tour" aria-label="weft: a first look">weft</a>
+        <a class="mark-of-weft" href="/tour">weft</a>
         <Tabs />
         <RunningJob />
         <RigState />

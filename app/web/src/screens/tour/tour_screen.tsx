@@ -36,7 +36,8 @@ function Step({href, says, picture, children}: {href: string; says: string; pict
 function ThroughTheCloth({session, solves}: Required<Archive>) {
   const {name, fabric, current_solve} = session;
   const solve = solves.solves.find(({id}) => id === current_solve);
-  const other = solves.truth ? 'truth' : solves.solves.find((each) => each !== solve && each.width === solve?.width)?.id;
+  // A preview has half the size of the truth.
+  const other = solves.truth && solve?.method !== 'preview' ? 'truth' : solves.solves.find((each) => each !== solve && each.width === solve?.width)?.id;
   const maps = {session: name, solve: current_solve};
   const seen = (sight: Partial<Sight>) => addressOfViewer(maps, {...FIRST_SIGHT, ...sight});
   const tile = (of: string) => `/api/v1/sessions/${encodeURIComponent(name)}/solves/${current_solve}/tiles/${of}`;
@@ -93,7 +94,7 @@ export default function TourScreen() {
           {session && name ? (
             <>
               {relit ? <relit.RelitCloth key={name.solve} name={name} says={session.fabric || session.name} /> : <p class="relit" />}
-              <p>{session.fabric || session.name}: <a href={addressOfViewer(name)}>look closer</a>, or <a href={`/material/${name.session}`}>see it on a ball</a></p>
+              <p>{session.fabric || session.name}: <a href={`/material/${name.session}`}>see it on a ball</a></p>
             </>
           ) : archive && <p class="relit gingham">No cloth is solved here yet.</p>}
         </div>
