@@ -18,6 +18,7 @@ constexpr int kRounds = 30;
 constexpr double kStep = 1e-5;    // of a parameter, for derivatives
 constexpr double kMetric = 0.05;  // Lab units, for the metric
 constexpr std::size_t kFewest = 9;
+constexpr double kLeastSpread = 0.02;                       // of colours about grey, over their brightness
 constexpr double kFarOff = 12, kNear = 3, kNarrower = 1.2;  // CIEDE2000
 
 // Entries off the diagonal by rows, then log scale, then shading: u, v, u^2, u v, v^2.
@@ -193,6 +194,23 @@ Result<void> check(std::span<const ChartSample> samples) {
                "photograph the chart without highlights, shadows and full patches"};
 }
 
+// How far colours are from grey in the direction in which they are nearest to it, rms over brightness. A
+// matrix that leaves grey as it is rests on these alone; of greys they are noise, and fit anything.
+double spread_of(std::span<const ChartSample> samples) {
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  double brightness = 0;
+  for (const ChartSample& s : samples) {
+    const auto& [r, g, b] = s.camera;
+    const Eigen::Vector2d from_grey((r - g) / std::sqrt(2.0), (r + g - 2 * b) / std::sqrt(6.0));
+    squares += from_grey * from_grey.transpose();
+    brightness += (r * r + g * g + b * b) / 3;
+  }
+  // The smaller of its eigenvalues.
+  const double half = (squares(0, 0) + squares(1, 1)) / 2;
+  const double aside = std::hypot((squares(0, 0) - squares(1, 1)) / 2, squares(0, 1));
+  return std::sqrt(std::max(0.0, half - aside) / brightness);
+}
+
 // Covariance of the nine entries from that of the six free ones.
 std::vector<double> covariance_of_entries(const Eigen::MatrixXd& of_parameters) {
   Eigen::Matrix<double, 9, 6> entries = Eigen::Matrix<double, 9, 6>::Zero();
@@ -271,7 +289,8 @@ Result<ColorFit> fit_color(std::span<const ChartSample> samples, ChartLight ligh
   const Eigen::LDLT<Eigen::MatrixXd> factored(fit.normal);
   const Eigen::Index n = fit.parameters.size();
   const double freedom = 3 * static_cast<double>(samples.size()) - static_cast<double>(n);
-  if (!factored.isPositive() || !(factored.rcond() > 1e-12) || !fit.parameters.allFinite()) {
+  if (!(spread_of(samples) > kLeastSpread) || !factored.isPositive() || !(factored.rcond() > 1e-12) ||
+      !fit.parameters.allFinite()) {
     return Error{ErrorKind::kBadData, "the patches do not determine a colour matrix", "chart",
                  "their colours are too much alike", "use all patches of the chart"};
   }

@@ -41,7 +41,8 @@ struct ColorFit {
 /// entries, log scale and shading. G is the metric of CIEDE2000 at the reference: the quadratic form that its
 /// square is for small differences, taken from differences of 0.05. So the weights are those of CIEDE2000 and
 /// the problem is smooth. `leave_one_out` also fits without each sample in turn. kBadData below 9 samples, or
-/// where they do not determine a matrix.
+/// where they do not determine a matrix: colours that are within 2 percent of grey, or of one line, are
+/// noise.
 Result<ColorFit> fit_color(std::span<const ChartSample> samples, ChartLight light, bool leave_one_out);
 
 /// The light of each sample over what the others would get in its place, if their light is a plane over the

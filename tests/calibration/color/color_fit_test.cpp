@@ -181,6 +181,17 @@ TEST(ColorFit, RefusesTooFewPatchesAndPatchesOfOneColour) {
   EXPECT_THAT(fit.error().message(), HasSubstr("too few patches"));
   std::vector<ChartSample> alike(12, samples_of(1, 0)[20]);
   EXPECT_FALSE(fit_color(alike, ChartLight::kEven, false));
+  // Greys that differ from each other by a thousandth of noise: a matrix that fits them turns red to grey.
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 1e-3);
+  std::vector<ChartSample> greys(24);
+  for (std::size_t i = 0; i < greys.size(); ++i) {
+    greys[i].reference.fill(0.03 * static_cast<double>(i + 1));
+    for (double& v : greys[i].camera) v = greys[i].reference[0] * (1 + noise(random));
+  }
+  const auto of_greys = fit_color(greys, ChartLight::kEven, false);
+  ASSERT_FALSE(of_greys);
+  EXPECT_THAT(of_greys.error().message(), HasSubstr("too much alike"));
   std::vector<ChartSample> black(12);
   EXPECT_FALSE(fit_color(black, ChartLight::kEven, false));
 }
