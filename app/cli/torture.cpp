@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "app/cli/carried_scenes.h"
 #include "app/cli/described_options.h"
@@ -12,11 +15,14 @@
 #include "core/base/files.h"
 #include "core/base/job_context.h"
 #include "core/base/temporary_folder.h"
+#include "core/describe/field_json.h"
 #include "material/run/maps.h"
+#include "simulator/sample_request.h"
 #include "simulator/scene/scene.h"
 #include "simulator/simulate.h"
-#include "simulator/torture_request.h"
 #include "solve/run/solve_session.h"
+#include "torture/hard_case.h"
+#include "torture/torture_request.h"
 
 namespace weft::app {
 namespace {
@@ -38,6 +44,7 @@ Result<void> simulate(const char* text, const fs::path& session, const JobContex
   return {};
 }
 
+// Neither makes again what is there already.
 Result<solve::SolveReport> simulate_and_solve(const char* scene, const fs::path& session,
                                               const solve::SolveOptions& options, const JobContext& context) {
   if (!is_there(session / "session.json")) {
@@ -46,24 +53,47 @@ Result<solve::SolveReport> simulate_and_solve(const char* scene, const fs::path&
   return solve::solve_session({session, {}, {}}, options, context);
 }
 
-int told(const Json& result, const fs::path& folder, const CommonArguments& common) {
-  if (common.json) {
-    print_json(result);
-  } else {
-    print(folder.string());
-  }
-  return kDone;
+std::string number_of(const std::optional<double>& error, const char* none) {
+  if (!error) return none;
+  return fmt::format("{:.{}g}", *error, *error < 1000 && *error >= 100 ? 3 : 2);
 }
 
-// Neither makes again what is there already.
-Result<int> torture(const fs::path& session, const CommonArguments& common) {
+void print_cases(const std::vector<torture::HardCase>& cases) {
+  std::size_t width = 0;
+  for (const torture::HardCase& hard : cases) width = std::max(width, hard.what.size());
+  print(
+      fmt::format("{:<{}}  {:>13}  {:>7}  off, and what weft says", "", width + 2, "plain formula", "weft"));
+  std::string stage;
+  for (const torture::HardCase& hard : cases) {
+    if (hard.stage != stage) print(hard.stage);
+    stage = hard.stage;
+    print(fmt::format("  {:<{}}  {:>13}  {:>7}  {}{}{}{}", hard.what, width,
+                      number_of(hard.plain, "no number"), number_of(hard.ours, "-"), hard.unit,
+                      hard.flag.empty() ? "" : "; ", hard.flag,
+                      hard.holds() ? "" : fmt::format("; OFF ITS BOUND of {:.2g}", hard.within)));
+  }
+}
+
+Result<int> torture(const torture::TortureRequest& request, const CommonArguments& common) {
   ProgressLine line(common.quiet);
   solve::SolveOptions options;
   options.condition = true;
   const Result<solve::SolveReport> solved = simulate_and_solve(
-      torture_scene(), session, options, {common.threads, stop_on_signal(), line.callback()});
+      torture_scene(), request.session, options, {common.threads, stop_on_signal(), line.callback()});
   if (!solved) return solved.error();
-  return told({{"session", session.stem().string()}, {"id", solved->facts.id}}, solved->folder, common);
+  const std::vector<torture::HardCase> cases = torture::hard_cases();
+  const auto off = std::ranges::count_if(cases, [](const auto& hard) { return !hard.holds(); });
+  if (common.json) {
+    print_json({{"session", request.session.stem().string()},
+                {"id", solved->facts.id},
+                {"cases", list_of(cases)},
+                {"off", off}});
+  } else {
+    print_cases(cases);
+    print(fmt::format("{} hard cases, {} off their bounds", cases.size(), off));
+    print(fmt::format("hard pixels in one picture: {}", (solved->folder / "status.png").string()));
+  }
+  return request.is_strict && off > 0 ? kDoneWithWarnings : kDone;
 }
 
 Result<int> sample(const fs::path& session, const CommonArguments& common) {
@@ -76,15 +106,20 @@ Result<int> sample(const fs::path& session, const CommonArguments& common) {
   const Result<material::MapsReport> maps = material::make_maps(options, context);
   if (!maps) return maps.error();
   const fs::path& folder = maps->folder;
-  return told(
-      {{"session", session.stem().string()}, {"id", solved->facts.id}, {"maps", folder.filename().string()}},
-      folder, common);
+  if (common.json) {
+    print_json({{"session", session.stem().string()},
+                {"id", solved->facts.id},
+                {"maps", folder.filename().string()}});
+  } else {
+    print(folder.string());
+  }
+  return kDone;
 }
 
 Run add_torture(Options& options) {
-  const auto a = std::make_shared<simulator::TortureRequest>();
+  const auto a = std::make_shared<torture::TortureRequest>();
   add_options(options, *a);
-  return [a](const CommonArguments& common) { return torture(a->session, common); };
+  return [a](const CommonArguments& common) { return torture(*a, common); };
 }
 
 Run add_sample(Options& options) {
@@ -96,8 +131,11 @@ Run add_sample(Options& options) {
 }  // namespace
 
 Verb torture_verb() {
-  return {"torture", "Simulate pixels that are hard to solve (docs/numerics.md), and solve them",
-          add_torture};
+  return {
+      "torture",
+      "Hard cases of every stage: how far off a plain formula is and weft, in degrees, pixels or percent, "
+      "and a scene of hard pixels",
+      add_torture};
 }
 
 Verb sample_verb() {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "bench/numerics/numerics.h"
-#include "bench/numerics/plain_formula.h"
 #include "bench/oracles/quad_oracle.h"
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
@@ -21,6 +20,7 @@
 #include "simulator/simulate.h"
 #include "simulator/simulation_plan.h"
 #include "solver/method.h"
+#include "torture/plain_formula.h"
 
 namespace weft::bench {
 namespace {
@@ -129,7 +129,7 @@ Result<Judged> judge(const fs::path& scene_file) {
                                  exact_red = test::solve_in_quad(test::oracle_rows(rows, 1));
       judged.condition[i] = exact.condition;
       judged.ours_deg[i] = angle_deg({maps(x, y, 0), maps(x, y, 1), maps(x, y, 2)}, exact.normal);
-      if (const auto plain = plain_normal<float>(rows))
+      if (const auto plain = torture::plain_normal<float>(rows))
         judged.plain_deg[i] = angle_deg(*plain, exact_red.normal);
     }
   }

@@ -6,289 +6,33 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <optional>
 #include <vector>
 
-#include "bench/numerics/plain_formula.h"
 #include "bench/oracles/hard_lights.h"
 #include "bench/oracles/oracle_rig.h"
 #include "bench/oracles/quad_oracle.h"
 #include "core/solve/solve_record.h"
 #include "solver/in_double/pixel.h"
+#include "torture/pixel_cases.h"
+#include "torture/plain_formula.h"
 
 namespace weft::bench {
 namespace {
 
-using test::OracleRow;
-using test::Trial;
-using test::Truth;
-using Spoil = std::function<void(Trial& trial)>;
-using TruthOf = std::function<Truth(int x, int y)>;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-const Size kFrame = {320, 4};
-const Rect kTile = {0, 0, 300, 1};
-
-/// What the angles of a case are measured to.
-enum class Against {
-  kQuad,    ///< exact arithmetic on the readings that can be used
-  kTruth,   ///< where readings in shadow do not fit the model
-  kNothing  ///< where nothing can be known
-};
-
-struct Case {
-  std::string number, what;
-  LightField field;
-  TruthOf truth;
-  Spoil spoil;
-  Against against = Against::kQuad;
-  std::optional<NoiseModel> noise = {};
-  Rect tile = kTile;
-};
-
-LightField distant_field(DistantLights lights) {
-  return *LightField::make(std::move(lights), std::nullopt, kFrame, 0);
-}
-
-DistantLights ten_distant() {
-  DistantLights lights;
-  for (const NearLight& led : test::ten_leds().leds)
-    lights.lights.push_back({normalized(led.position_mm), {1, 1, 1}});
-  return lights;
-}
-
-Truth cloth(int x, int y, double most_deg = 15) {
-  test::Random random(static_cast<std::uint64_t>(y) * 1000 + static_cast<std::uint64_t>(x));
-  return {test::random_normal(random, most_deg), {0.4, 0.4, 0.4}};
-}
-
-/// A cloth that faces a cluster of lights.
-Truth facing_cluster(int x, int y) {
-  const Vec3 z = cloth(x, y, 10).normal, axis = test::cluster_axis(), across = {0, 1, 0};
-  return {z.x * across + z.y * cross(axis, across) + z.z * axis, {0.4, 0.4, 0.4}};
-}
-
-TruthOf level() {
-  return [](int x, int y) { return cloth(x, y); };
-}
-
-/// set(reading, x) for the readings of lights `from` to `to`.
-template <typename Set>
-Spoil each(std::size_t from, std::size_t to, const Set& set) {
-  return [=](Trial& trial) {
-    for (std::size_t k = from; k < to; ++k) {
-      for (int x = 0; x < trial.normals.width(); ++x) set(trial.reading(k)(x, 0), x);
-    }
-  };
-}
-Spoil nothing() {
-  return [](Trial&) {};
-}
-Spoil becomes(std::size_t from, std::size_t to, float value) {
-  return each(from, to, [value](float& r, int) { r = value; });
-}
-
-DistantLights twelve_decades_of_light() {
-  DistantLights lights = ten_distant();
-  for (std::size_t k = 0; k < 10; ++k)
-    lights.lights[k].irradiance_rgb.fill(std::pow(10, -6 + 12.0 * static_cast<double>((k * 7) % 10) / 9));
-  return lights;
-}
-
-DistantLights with_one_doubled() {
-  DistantLights lights = test::clustered_lights(4, 2);
-  lights.lights.push_back(lights.lights[1]);
-  return lights;
-}
-
-DistantLights three_and_seven_copies() {
-  DistantLights lights = test::clustered_lights(3, 2);
-  for (int k = 0; k < 7; ++k) lights.lights.push_back(lights.lights[0]);
-  return lights;
-}
-
-/// Three rings, the lowest one degree above the table.
-DistantLights dome() {
-  DistantLights lights;
-  for (const double zenith_deg : {30.0, 60.0, 89.0}) {
-    for (int i = 0; i < 8; ++i) {
-      const double azimuth = radians(45.0 * i + zenith_deg), zenith = radians(zenith_deg);
-      lights.lights.push_back(
-          {{std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith)},
-           {1, 1, 1}});
-    }
-  }
-  return lights;
-}
-
-Truth grazing(int x, int) {
-  const double tilt = radians(60 + 35.0 * x / 299), azimuth = 0.7 * x;
-  return {{std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)},
-          {0.4, 0.4, 0.4}};
-}
-
-DistantLights scaled(double factor) {
-  DistantLights lights = ten_distant();
-  for (DistantLight& light : lights.lights) light.irradiance_rgb.fill(factor);
-  return lights;
-}
-
-Vec3 turned(Vec3 v) {
-  const Vec3 axis = normalized({1, 2, 3});
-  const double c = std::cos(radians(25)), s = std::sin(radians(25));
-  return c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis;
-}
-
-DistantLights turned_lights() {
-  DistantLights lights = ten_distant();
-  for (DistantLight& light : lights.lights) light.direction = turned(light.direction);
-  return lights;
-}
-
-Truth turned_cloth(int x, int y) {
-  const Truth still = cloth(x, y);
-  return {turned(still.normal), still.albedo};
-}
-
-std::vector<Case> all_cases() {
-  const auto clustered = [](double condition) { return distant_field(test::clustered_lights(6, condition)); };
-  const LightField ten = distant_field(ten_distant());
-  const NoiseModel noise = {0, 1e-6, 0};
-  const Truth black = {{0, 0, 1}, {0, 0, 0}};
-  const auto black_cloth = [black](int, int) { return black; };
-  const auto noisy = [noise](Trial& trial) { trial.add_noise(noise, 3); };
-  const auto by_albedo = [](double low, double high) {
-    return [=](int x, int y) {
-      const double a = std::pow(10, low + (high - low) * x / 299);
-      return Truth{cloth(x, y).normal, {a, a, a}};
-    };
-  };
-  const Rect beside_line = {test::kLinePixel, 0, test::kLinePixel + 100, 1};
-  const auto towards_leds = [](int, int) { return Truth{{-0.5, 0, std::sqrt(0.75)}, {0.4, 0.4, 0.4}}; };
-  std::vector<Case> cases;
-  for (const double condition : {3.0, 20.0, 1e3, 1e5})
-    cases.push_back({"1", fmt::format("six lights that close up, condition {:g}", condition),
-                     clustered(condition), facing_cluster, nothing()});
-  cases.push_back({"1",
-                   "three LEDs almost in a plane with the cloth point, condition 1e6 to 1e8",
-                   test::coplanar_field(1e8),
-                   towards_leds,
-                   becomes(3, 6, kNaN),
-                   Against::kQuad,
-                   {},
-                   beside_line});
-  cases.push_back(
-      {"2", "one of four lights twice", distant_field(with_one_doubled()), facing_cluster, [](Trial& trial) {
-         trial.add_noise({1e-4, 0, 0}, 5);
-         for (int x = 0; x < 300; ++x) trial.reading(4)(x, 0) = trial.reading(1)(x, 0);
-       }});
-  cases.push_back({"2", "eight copies of one light and one other", distant_field(three_and_seven_copies()),
-                   facing_cluster, becomes(2, 3, kNaN), Against::kNothing});
-  cases.push_back({"3", "two lights", ten, level(), becomes(2, 10, kNaN), Against::kNothing});
-  cases.push_back({"4", "exactly three lights, condition 16", distant_field(test::clustered_lights(3, 16)),
-                   facing_cluster, nothing()});
-  cases.push_back({"5", "all readings below three sigma", ten, black_cloth,
-                   each(0, 10, [](float& r, int x) { r = 1e-3f * static_cast<float>(std::sin(x + 1)); }),
-                   Against::kNothing, noise});
-  cases.push_back({"6", "three of ten readings saturated", ten, level(), becomes(2, 5, kInfinity)});
-  cases.push_back({"7", "zero albedo: noise alone", ten, black_cloth, noisy, Against::kNothing, noise});
-  cases.push_back(
-      {"8", "intensities over twelve decades", distant_field(twelve_decades_of_light()), level(), nothing()});
-  cases.push_back({"8", "albedo over twelve decades", ten, by_albedo(-6, 6), nothing()});
-  cases.push_back({"9", "a NaN among the readings", ten, level(), becomes(4, 5, kNaN)});
-  cases.push_back({"9", "a negative reading", ten, level(), becomes(4, 5, -0.01f), Against::kTruth});
-  cases.push_back({"9", "denormal readings", ten, by_albedo(-42, -39), nothing()});
-  cases.push_back({"10", "normals of 60 to 95 degrees, lights behind them at 0", distant_field(dome()),
-                   grazing, nothing(), Against::kTruth});
-  cases.push_back({"14", "intensities times 1e-30", distant_field(scaled(1e-30)), level(), nothing()});
-  cases.push_back({"14", "intensities times 1e30", distant_field(scaled(1e30)), level(), nothing()});
-  cases.push_back({"15", "lights and cloth turned by 25 degrees", distant_field(turned_lights()),
-                   turned_cloth, nothing()});
-  return cases;
-}
-
-/// The worst of some angles; nothing once one of them is no number.
-class Worst {
- public:
-  void add(const std::optional<Vec3>& n, Vec3 exact) {
-    if (n) {
-      worst_ = std::max(worst_, angle_deg(*n, exact));
-    } else {
-      is_number_ = false;
-    }
-  }
-  Json json() const { return is_number_ ? Json(worst_) : Json(); }
-
- private:
-  double worst_ = 0;
-  bool is_number_ = true;
-};
-
-/// What solved a pixel in the end: a kernel's own answer is another than that of double to the last bit.
-enum Path { kFloat32, kEquations, kQr, kSvd, kUnsolved };
-
-Path path_of(const Trial& trial, int x, const solver::PixelSolution& in_double) {
-  if ((trial.status(x, 0) & kNoSolution) != 0) return kUnsolved;
-  const Vec3 n = in_double.normal;
-  const bool same = trial.normals(x, 0, 0) == static_cast<float>(n.x) &&
-                    trial.normals(x, 0, 1) == static_cast<float>(n.y) &&
-                    trial.normals(x, 0, 2) == static_cast<float>(n.z) &&
-                    trial.residual(x, 0) == static_cast<float>(in_double.residual);
-  if (!same) return kFloat32;
-  switch (in_double.path) {
-    case solver::EquationsSolvedBy::kSvd:
-      return kSvd;
-    case solver::EquationsSolvedBy::kQr:
-      return kQr;
-    default:
-      return kEquations;
-  }
-}
-
-std::string flags_of(int status) {
-  std::string flags;
-  for (const StatusName& name : kStatusNames) {
-    if ((status & name.bit) != 0) flags += (flags.empty() ? "" : " ") + std::string(name.name);
-  }
-  return flags;
-}
-
-Json row_of(const Case& c) {
-  Trial trial(c.field, c.tile, 1, c.truth);
-  c.spoil(trial);
-  trial.solve(*solver::fast_method(), c.noise);
-  Worst plain_float32, plain_double, ours;
-  int flags = 0;
-  std::array<int, 5> paths = {};
-  for (int x = 0; x < c.tile.width(); ++x) {
-    const std::vector<solver::PixelRow> rows = trial.rows(x, 0);
-    flags |= trial.status(x, 0);
-    ++paths[path_of(trial, x, solver::solve_pixel(rows, {1, true, c.noise}))];
-    if (c.against == Against::kNothing) continue;
-    const bool solved = (trial.status(x, 0) & kNoSolution) == 0;
-    const Vec3 exact = c.against == Against::kTruth ? c.truth(x, 0).normal
-                       : solved                     ? test::solve_in_quad(test::oracle_rows(rows, 1)).normal
-                                                    : Vec3{0, 0, 1};
-    if (!solved) continue;
-    ours.add(trial.normal(x, 0), exact);
-    plain_float32.add(plain_normal<float>(rows), exact);
-    plain_double.add(plain_normal<double>(rows), exact);
-  }
-  const bool known = c.against != Against::kNothing;
-  Json row = {{"case", c.number}, {"what", c.what}};
-  row["plain_float32_deg"] = known ? plain_float32.json() : Json();
-  row["plain_double_deg"] = known ? plain_double.json() : Json();
-  row["ours_deg"] = known ? ours.json() : Json();
-  row["flags"] = flags_of(flags);
-  const auto percent = [&](Path path) { return 100.0 * paths[path] / c.tile.width(); };
-  row["float32"] = percent(kFloat32);
-  row["double_normal_equations"] = percent(kEquations);
-  row["double_qr"] = percent(kQr);
-  row["double_svd"] = percent(kSvd);
-  row["unsolved"] = percent(kUnsolved);
+Json row_of(const torture::PixelCase& pixels) {
+  const torture::PixelOutcome outcome = torture::outcome_of(pixels);
+  const auto number = [](const std::optional<double>& deg) { return deg ? Json(*deg) : Json(); };
+  Json row = {{"case", pixels.number}, {"what", pixels.what}};
+  row["plain_float32_deg"] = number(outcome.plain_float32_deg);
+  row["plain_double_deg"] = number(outcome.plain_double_deg);
+  row["ours_deg"] = number(outcome.ours_deg);
+  row["flags"] = torture::names_of_status(outcome.status);
+  row["float32"] = outcome.percent[torture::PixelOutcome::kFloat32];
+  row["double_normal_equations"] = outcome.percent[torture::PixelOutcome::kEquations];
+  row["double_qr"] = outcome.percent[torture::PixelOutcome::kQr];
+  row["double_svd"] = outcome.percent[torture::PixelOutcome::kSvd];
+  row["unsolved"] = outcome.percent[torture::PixelOutcome::kUnsolved];
   return row;
 }
 
@@ -296,7 +40,7 @@ Json row_of(const Case& c) {
 
 Rows numerics_cases() {
   Rows rows;
-  for (const Case& c : all_cases()) rows.push_back(row_of(c));
+  for (const torture::PixelCase& pixels : torture::pixel_cases()) rows.push_back(row_of(pixels));
   return rows;
 }
 
@@ -380,11 +124,11 @@ Rows numerics_curve() {
       const auto note = [&](std::size_t method, const std::optional<Vec3>& n) {
         worst[method] = std::max(worst[method], n ? angle_deg(*n, exact.normal) : 180.0);
       };
-      note(0, plain_normal<float>(pixels[x]));
-      note(1, qr_normal<float>(pixels[x]));
-      note(2, svd_normal<float>(pixels[x]));
-      note(3, plain_normal<double>(pixels[x]));
-      note(4, svd_normal<double>(pixels[x]));
+      note(0, torture::plain_normal<float>(pixels[x]));
+      note(1, torture::qr_normal<float>(pixels[x]));
+      note(2, torture::svd_normal<float>(pixels[x]));
+      note(3, torture::plain_normal<double>(pixels[x]));
+      note(4, torture::svd_normal<double>(pixels[x]));
       note(5, ours.normals[x]);
     }
     rows.push_back({{"condition", condition},

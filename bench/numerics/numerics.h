@@ -11,9 +11,9 @@ namespace weft::bench {
 /// One row for each numerically hard case of docs/numerics.md, by its number.
 /// plain_float32_deg, plain_double_deg: the textbook formula, (A^T A)^-1 A^T r of all readings as they are;
 /// worst angle to what exact arithmetic makes of the same readings. ours_deg: that of `fast` over all pixels
-/// with a solution. Null is no number at all. flags: the status bits that were raised, or what was refused.
-/// float32, double_normal_equations, double_qr, double_svd, unsolved: percent of the pixels by what solved
-/// them in the end.
+/// with a solution. Where readings tell nothing the formula's angle is to the cloth. Null is no number at
+/// all. flags: the status bits that were raised. float32, double_normal_equations, double_qr, double_svd,
+/// unsolved: percent of the pixels by what solved them in the end.
 Rows numerics_cases();
 
 /// One row for each condition number from 1 to 1e8: worst angles of 300 pixels under six lights that close

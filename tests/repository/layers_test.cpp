@@ -67,6 +67,8 @@ const std::vector<Layer> kLayers = {
       "library/run/"}},
     {{"report/"}, {"core/"}},
     {{"simulator/"}, {"core/"}, {"core/rig/light_field", "core/rig/radiometry"}},
+    {{"torture/"},
+     {"bench/oracles/", "calibration/", "capture/", "core/", "exchange/", "material/", "solver/"}},
     {{"virtual_rig/program/"}, {"app/cli/exit_code", "core/", "simulator/", "virtual_rig/"}},
     {{"virtual_rig/"}, {"core/", "firmware/protocol/", "simulator/"}},
     {{"app/server/view/"},
@@ -74,25 +76,25 @@ const std::vector<Layer> kLayers = {
     {{"app/server/"},
      {"calibration/guide/", "calibration/run/", "capture/", "core/", "exchange/export/", "firmware/protocol/",
       "library/", "material/assets/", "material/read/", "material/run/", "report/",
-      "simulator/torture_request", "solve/run/", "solve/session/", "virtual_rig/control_socket"}},
+      "simulator/sample_request", "solve/run/", "solve/session/", "torture/torture_request", "virtual_rig/control_socket"}},
     {{"app/cli/"},
      {"app/server/", "calibration/guide/", "calibration/run/", "capture/", "core/", "exchange/export/",
       "exchange/presets/", "library/", "material/assets/", "material/read/", "material/run/", "report/",
-      "simulator/", "solve/report/", "solve/run/", "solve/session/", "virtual_rig/rig_process"}},
+      "simulator/", "solve/report/", "solve/run/", "solve/session/", "torture/", "virtual_rig/rig_process"}},
     {{"firmware/"}, {}},
     {{"bench/program/"}, {"app/cli/", "bench/", "capture/rig_devices/", "core/"}},
     {{"bench/"},
      {"app/server/", "calibration/", "capture/", "core/", "exchange/", "library/", "material/", "report/",
-      "simulator/", "solve/", "solver/", "virtual_rig/"}},
+      "simulator/", "solve/", "solver/", "torture/", "virtual_rig/"}},
     {{"tests/"},
      {"app/", "bench/", "calibration/", "capture/", "core/", "exchange/", "firmware/", "library/",
-      "material/", "report/", "simulator/", "solve/", "solver/", "virtual_rig/"}},
+      "material/", "report/", "simulator/", "solve/", "solver/", "torture/", "virtual_rig/"}},
 };
 
 /// What a path from the root of the repository begins with.
-const Prefixes kRoots = {"app/",       "bench/",    "calibration/", "capture/",  "core/",
-                         "exchange/",  "firmware/", "library/",     "material/", "report/",
-                         "simulator/", "solve/",    "solver/",      "tests/",    "virtual_rig/"};
+const Prefixes kRoots = {"app/",      "bench/",   "calibration/", "capture/",    "core/",      "exchange/",
+                         "firmware/", "library/", "material/",    "report/",     "simulator/", "solve/",
+                         "solver/",   "tests/",   "torture/",     "virtual_rig/"};
 
 const std::vector<Door> kDoors = {
     {"CLI/", {"app/cli/", "tests/app/cli/", "virtual_rig/program/"}},

@@ -256,7 +256,7 @@ const std::vector<Verb>& verbs() {
       {{"bench", "solve"}, {"millions of pixels", "=4"}},
       {{"demo"}, {"millions of pixels", "=demo"}},
       {{"rig", "plan"}, {"seconds a shot", "=satin", "degrees; default 20", "default 0.04", "$WEFT_RIG"}},
-      {{"torture"}, {"=torture.weft", "may be there already"}},
+      {{"torture"}, {"=torture.weft", "may be there already", "degrees, pixels or percent"}},
       {{"sample"}, {"=sample.weft", "may be there already"}}};
   return all;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/image_io/image_io.h"
 #include "core/rig/light_field.h"
@@ -100,6 +101,28 @@ TEST(Torture, IsMadeByOneVerbWithTheConditionOfTheLightsThatEachPixelKept) {
   }
   const Outcome again = run_weft({"torture", "-o", (work / "torture.weft").string(), "--json", "-q"});
   EXPECT_EQ(again.output, run.output) << "what is there is not made again";
+}
+
+TEST(Torture, PrintsALineAHardCaseOfEachStage) {
+  const Workspace work;
+  const std::vector<std::string> arguments = {"torture", "-o", (work / "torture.weft").string(), "--strict", "-q"};
+  const Outcome run = run_weft(arguments);
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  std::vector<std::string> with_json = arguments;
+  with_json.emplace_back("--json");
+  const Json document = run_weft(with_json).json();
+  EXPECT_EQ(document["off"], 0) << document;
+  EXPECT_GE(document["cases"].size(), 20U);
+  for (const Json& hard : document["cases"]) {
+    const std::string what = hard["what"];
+    const auto at = run.output.find("\n  " + what + "  ");
+    ASSERT_NE(at, std::string::npos) << what;
+    const std::string line = run.output.substr(at + 1, run.output.find('\n', at + 1) - at - 1);
+    EXPECT_NE(line.find(hard["unit"].get<std::string>()), std::string::npos) << line;
+    EXPECT_NE(line.find(hard["flag"].get<std::string>()), std::string::npos) << line;
+    EXPECT_EQ(line.find("no number") != std::string::npos, !hard.contains("plain")) << line;
+    EXPECT_EQ(line.find("  -  ") != std::string::npos, !hard.contains("ours")) << line;
+  }
 }
 
 TEST(Torture, IsExplainedPassByPass) {

@@ -33,10 +33,19 @@ test('a board that is gone is told of with a remedy to copy, and is back when on
   await visitor.leave();
 });
 
-test('one click opens the torture scene with its status, and a key the condition of its lights', async () => {
+test('one click shows what is hard in each stage, one more its pixels, and a key the condition of their lights', async () => {
   const visitor = await visit(browser, rig);
   const page = await visitor.open(`${rig.address}/doctor`);
-  await page.getByRole('button', {name: 'Torture scene'}).click();
+  await page.getByRole('button', {name: 'Hard cases'}).click();
+  const cases = page.getByRole('table', {name: 'Hard cases'});
+  const three = cases.getByRole('row', {name: /three LEDs almost in a plane/});
+  await three.getByText(/ILL_CONDITIONED/).waitFor();
+  for (const stage of ['capture', 'calibration', 'solver', 'gloss', 'height', 'maps', 'export'])
+    assert.ok(await cases.getByRole('cell', {name: stage, exact: true}).count() > 2, stage);
+  await page.getByText(/0 off their bounds/).waitFor();
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'hard-cases');
+  await page.getByRole('link', {name: 'Hard pixels in one picture'}).click();
   await page.waitForURL(/\/viewer\/torture\/[0-9a-f]+\?layer=status/);
   await page.getByRole('checkbox', {name: /ILL_CONDITIONED/, checked: true}).waitFor();
   await page.locator('canvas[data-ready=true]').waitFor();

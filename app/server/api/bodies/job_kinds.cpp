@@ -26,8 +26,9 @@
 #include "material/assets/build_request.h"
 #include "material/run/maps_request.h"
 #include "material/run/rectify.h"
-#include "simulator/torture_request.h"
 #include "solve/run/solve_request.h"
+#include "simulator/sample_request.h"
+#include "torture/torture_request.h"
 
 namespace weft::app {
 namespace {
@@ -245,7 +246,7 @@ const std::vector<JobKind>& job_kinds() {
       {"rectify", "Rectified maps", {"rectify"}, {walk<material::RectifyOptions>}},
       {"copy", "Second copy", {"copy"}, {walk<capture::CopyRequest>}, add_copy_place},
       {"make", "Maps and exports, made final", {"make"}, {walk<library::MakeOptions>}},
-      {"torture", "Torture scene", {"torture"}, {walk<simulator::TortureRequest>}, add_carried_place},
+      {"torture", "Hard cases", {"torture"}, {walk<torture::TortureRequest>}, add_carried_place},
       {"sample", "Sample cloth", {"sample"}, {walk<simulator::SampleRequest>}, add_carried_place},
       {"rig_plan",
        "Which light to add",

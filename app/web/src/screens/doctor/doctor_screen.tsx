@@ -3,14 +3,12 @@
 import './doctor.css';
 import {useEffect, useState} from 'preact/hooks';
 import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
-import {go} from '../../state/address';
 import {version} from '../../state/rig';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import {Mark} from '../../ui/mark';
-import {Simulated} from '../jobs/simulated';
-import {addressOfViewer, FIRST_SIGHT, type SolveName} from '../viewer/sight';
+import {AskHardCases} from '../jobs/torture';
 
 type Doctor = Schemas['Doctor'];
 type Finding = Doctor['findings'][number];
@@ -102,10 +100,6 @@ async function examine(): Promise<Examined> {
   return {doctor: await answer(api.GET('/api/v1/doctor')), page: findingsOfPage(roundTrip_ms)};
 }
 
-function seeStatus(name: SolveName): void {
-  go(addressOfViewer(name, {...FIRST_SIGHT, layer: 'status'}));
-}
-
 export default function DoctorScreen() {
   const [examined, setExamined] = useState<Examined | null>(null);
   const [complaint, complain] = useState<ApiError | null>(null);
@@ -129,8 +123,7 @@ export default function DoctorScreen() {
       {examined && (
         <section class="panel">
           <h2>Solver</h2>
-          <p class="dim">Lights that close up, twelve decades of exposure, readings lost: what the solver says of pixels that are hard to solve.</p>
-          <div class="row"><Simulated kind="torture" says="Torture scene" onMade={seeStatus} /></div>
+          <div class="row"><AskHardCases /></div>
         </section>
       )}
       {version.value && <Versions said={version.value} />}

@@ -61,6 +61,7 @@ function Subject({job}: {job: Job}) {
       <a href={`/sessions/${job.of}`}><ClothName session={job.of} /></a>
       {isOfMaps && <> <a href={`/viewer/${job.of}/maps/${textIn(job.result, 'id')}`}>Look at them</a></>}
       {solve && <> <a href={`/viewer/${job.of}/${solve}`}>Look at it</a></>}
+      {job.kind === 'torture' && <> <a href="/jobs?hard">Hard cases</a></>}
       {job.kind === 'price' && job.state === 'done' && <> <a href={`/jobs?price=${job.of}`}>Levels</a></>}
     </>
   );

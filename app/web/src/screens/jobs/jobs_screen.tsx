@@ -10,19 +10,22 @@ import {askOlder, complaint, jobs, olderThan, queue, useJobs} from './jobs';
 import {Log} from './log';
 import {Price} from './price';
 import type {Job} from './queue';
+import {HardCases} from './torture';
 
-/** What the daemon works at, what waits and what was done; and what each level would cost for a session. */
+/** What the daemon works at, what waits and what was done; what each level would cost for a session, and hard cases. */
 export default function JobsScreen() {
   useJobs();
   const [logged, showLog] = useState<Job | null>(null);
   const session = place.value.query.get('price');
+  const isOfHardCases = place.value.query.has('hard');
   const {running, waiting, ended} = queue.value;
   return (
     <div class="page jobs">
       <div class="row"><h1>Jobs</h1> <a href="/batches">Batches</a></div>
       <Complaint error={complaint.value} />
       {session && <Price session={session} />}
-      {session && <div><Button kind="quiet" onClick={() => amend({price: null})}>Only the jobs</Button></div>}
+      {isOfHardCases && <HardCases />}
+      {(session || isOfHardCases) && <div><Button kind="quiet" onClick={() => amend({price: null, hard: null})}>Only the jobs</Button></div>}
       {jobs.value.length === 0 && (
         <Empty says="Nothing was asked for yet. Sessions are solved, priced and rectified here.">
           <a href="/sessions">Choose one from the library</a>

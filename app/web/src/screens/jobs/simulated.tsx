@@ -11,18 +11,17 @@ import {jobs, queueJob, useJobs} from './jobs';
 import {hasEnded} from './queue';
 
 interface SimulatedProps {
-  kind: 'sample' | 'torture';
   says: string;
   isMain?: boolean;
   onMade: (name: SolveName) => void;
 }
 
 /** A job that runs already is followed too. */
-export function Simulated({kind, says, isMain, onMade}: SimulatedProps) {
+export function Simulated({says, isMain, onMade}: SimulatedProps) {
   useJobs();
   const [id, setId] = useState('');
-  const make = useAction(async () => setId((await queueJob({kind})).id));
-  const job = jobs.value.find((each) => each.id === id || (each.kind === kind && !hasEnded(each)));
+  const make = useAction(async () => setId((await queueJob({kind: 'sample'})).id));
+  const job = jobs.value.find((each) => each.id === id || (each.kind === 'sample' && !hasEnded(each)));
   const solve = textIn(job?.result, 'id');
   useEffect(() => {
     if (job) setId(job.id);

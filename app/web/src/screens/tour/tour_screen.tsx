@@ -9,10 +9,10 @@ import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import {counted} from '../../ui/say';
 import {Simulated} from '../jobs/simulated';
+import {AskHardCases} from '../jobs/torture';
 import {addressOfViewer, FIRST_SIGHT, type Sight} from '../viewer/sight';
 
 type Relit = typeof import('../viewer/viewer_screen')['RelitCloth'];
-
 
 interface Archive {
   total: number;
@@ -105,9 +105,10 @@ export default function TourScreen() {
             <p>{archive && counted(archive.total, 'cloth')} in the library.{!hasRig && ' This server has no rig: it shows archives.'}</p>
           </li>
           <li>
-            <Simulated kind="sample" says="Try it without a rig" isMain={!hasRig && !session} onMade={again} />
+            <Simulated says="Try it without a rig" isMain={!hasRig && !session} onMade={again} />
             <p>A sample cloth in seconds: simulated, solved, a material.</p>
           </li>
+          <li><AskHardCases /></li>
         </ul>
       </div>
       {session && solves && <ol><ThroughTheCloth total={0} session={session} solves={solves} /></ol>}

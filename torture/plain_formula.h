@@ -10,7 +10,7 @@
 #include "solver/in_double/pixel.h"
 #include "solver/method.h"
 
-namespace weft::bench {
+namespace weft::torture {
 
 /// The system of a pixel as a textbook writes it: rows e l and r, every reading as it is, no scaling.
 template <typename Scalar>
@@ -63,4 +63,4 @@ std::optional<Vec3> svd_normal(std::span<const solver::PixelRow> rows) {
   return direction_of(typename PlainSystem<Scalar>::Vector(svd.solve(s.r)));
 }
 
-}  // namespace weft::bench
+}  // namespace weft::torture

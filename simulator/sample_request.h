@@ -7,21 +7,12 @@
 
 namespace weft::simulator {
 
-/// What `weft torture` and its job are told.
-struct TortureRequest {
-  std::filesystem::path session = "torture.weft";
-};
-
 /// What `weft sample` and its job are told.
 struct SampleRequest {
   std::filesystem::path session = "sample.weft";
 };
 
 inline void describe(Fields& fields, SampleRequest& request) {
-  describe_output(fields, request.session, "Session folder, NAME.weft, which may be there already");
-}
-
-inline void describe(Fields& fields, TortureRequest& request) {
   describe_output(fields, request.session, "Session folder, NAME.weft, which may be there already");
 }
 
