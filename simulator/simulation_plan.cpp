@@ -72,6 +72,20 @@ Result<SimulationPlan> plan_of(const Scene& scene) {
   return plan;
 }
 
+std::vector<LeftOutEffect> bounded_left_out(const SimulationPlan& plan) {
+  const EffectBounds bounds = bounds_of(plan.scene, plan.rig);
+  std::vector<LeftOutEffect> left_out;
+  std::size_t i = 0;
+  for (const EffectKey& key : effect_keys()) {
+    const EffectBound& bound = bounds[i++];
+    const bool is_out =
+        std::ranges::find(plan.left_out, key.name, &LeftOutEffect::name) != plan.left_out.end();
+    if (is_out) left_out.push_back({key.name, bound.why, bound.sigma});
+  }
+  std::ranges::stable_sort(left_out, {}, &LeftOutEffect::bound_sigma);
+  return left_out;
+}
+
 double seconds_saved(const SimulationPlan& plan, const LeftOutEffect& effect) {
   constexpr int kProbe = 96;
   Scene with = plan.scene;

@@ -23,6 +23,10 @@ struct SimulationPlan {
 /// rig_of().
 Result<SimulationPlan> plan_of(const Scene& scene);
 
+/// What is left out, with what each would change at most and why, also where a scene only does not name it;
+/// the least first.
+std::vector<LeftOutEffect> bounded_left_out(const SimulationPlan& plan);
+
 /// Seconds of one thread that a left-out effect would have cost, from running the centre of the frame with it
 /// and without. An effect that could not run there would have cost nothing.
 double seconds_saved(const SimulationPlan& plan, const LeftOutEffect& effect);

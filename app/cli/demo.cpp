@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "app/cli/carried_scenes.h"
 #include "app/cli/exit_code.h"
+#include "app/cli/left_out_effects.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
@@ -17,6 +19,7 @@
 #include "material/read/compare.h"
 #include "simulator/scene/resolution.h"
 #include "simulator/simulate.h"
+#include "simulator/simulation_plan.h"
 #include "solve/run/explain.h"
 #include "solve/run/ladder_picture.h"
 #include "solve/run/solve_session.h"
@@ -55,6 +58,7 @@ struct Outcome {
   solve::NormalComparison normal;
   material::AlbedoComparison albedo;
   std::uint64_t session_bytes = 0, map_bytes = 0;
+  std::vector<simulator::LeftOutEffect> left_out;  ///< of the simulation, with what each would change at most
 
   const solve::LadderStep& bought() const {
     return *std::ranges::find(levels, recommended, &solve::LadderStep::quality);
@@ -133,6 +137,9 @@ Result<void> climb(const fs::path& session, Outcome& outcome, const JobContext& 
 Result<Outcome> scan_and_solve(const DemoArguments& arguments, const simulator::Scene& scene,
                                const fs::path& session, const CommonArguments& common) {
   Outcome outcome;
+  const Result<simulator::SimulationPlan> plan = simulator::plan_of(scene);
+  if (!plan) return plan.error();
+  outcome.left_out = simulator::bounded_left_out(*plan);
   Stopwatch watch;
   outcome.is_scanned = is_there(program_beside(kVirtualRig));
   if (Result<void> ok = photograph(arguments, scene, session, common); !ok) return std::move(ok).error();
@@ -176,6 +183,8 @@ void print_table(const simulator::Scene& scene, const Outcome& o) {
   const solve::LadderStep& bought = o.bought();
   print(fmt::format("{}, {} x {} pixels, {} frames", scene.fabric, scene.camera.width, scene.camera.height,
                     o.frames));
+  print_left_out(o.left_out);
+  print("");
   print_levels(o);
   print(fmt::format("  at {}:", bought.quality));
   print(fmt::format("  normal error    mean {:.3f}, median {:.3f}, 95 % under {:.3f} degrees",
@@ -203,6 +212,13 @@ Json outcome_json(const Outcome& o) {
                       {"foretold", step.foretold ? object_of(*step.foretold) : Json()},
                       {"taken", step.taken ? object_of(*step.taken) : Json()}});
   }
+  Json left_out = Json::array();
+  for (const simulator::LeftOutEffect& effect : o.left_out) {
+    const bool is_bounded = std::isfinite(effect.bound_sigma);
+    left_out.push_back({{"effect", effect.name},
+                        {"why", effect.why},
+                        {"bound_sigma", is_bounded ? Json(effect.bound_sigma) : Json()}});
+  }
   return {
       {"levels", std::move(levels)},
       {"recommended", o.recommended},
@@ -214,6 +230,7 @@ Json outcome_json(const Outcome& o) {
        {{"mean_deg", o.normal.mean_deg}, {"median_deg", o.normal.median_deg}, {"p95_deg", o.normal.p95_deg}}},
       {"albedo", {{"mean_rel", o.albedo.mean_rel}, {"bias_rel", o.albedo.bias_rel}}},
       {"seconds", std::move(seconds)},
+      {"left_out", std::move(left_out)},
       {"session_bytes", o.session_bytes},
       {"map_bytes", o.map_bytes}};
 }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/cli/exit_code.h"
+#include "app/cli/left_out_effects.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
@@ -35,12 +36,11 @@ struct SimulateArguments {
   std::vector<std::string> parts;  ///< of the captures; empty: all
 };
 
-constexpr double kWorthTelling_s = 0.05;
-
 /// What runs and what does not, known before the run.
 struct Explanation {
   SimulationPlan plan;
   simulator::PassList passes;
+  std::vector<LeftOutEffect> left_out;
   // Only where bounds decided:
   simulator::EffectBounds bounds;
   std::vector<double> saved_seconds;  ///< of one thread, by left-out effect
@@ -52,10 +52,11 @@ Result<Explanation> explain(const simulator::Scene& scene) {
   Result<simulator::PassList> passes =
       simulator::build_passes(plan->scene, plan->rig, simulator::Output::kCounts);
   if (!passes) return passes.error();
-  Explanation explanation = {std::move(*plan), std::move(*passes), {}, {}};
+  Explanation explanation = {std::move(*plan), std::move(*passes), {}, {}, {}};
+  explanation.left_out = simulator::bounded_left_out(explanation.plan);
   if (scene.auto_to_sigma) {
     explanation.bounds = simulator::bounds_of(explanation.plan.scene, explanation.plan.rig);
-    for (const LeftOutEffect& effect : explanation.plan.left_out) {
+    for (const LeftOutEffect& effect : explanation.left_out) {
       explanation.saved_seconds.push_back(simulator::seconds_saved(explanation.plan, effect));
     }
   }
@@ -73,24 +74,12 @@ std::string why(const simulator::Pass& pass, const simulator::EffectBounds& boun
                            : fmt::format("{}, up to {:.2g} sigma", pass.effect, sigma);
 }
 
-void print_plan(const Explanation& explanation, const simulator::Scene& scene) {
+void print_plan(const Explanation& explanation) {
   print("pass             why it runs                        what it does");
   for (const simulator::Pass& pass : explanation.passes.passes) {
     print(fmt::format("{:<16} {:<34} {}", pass.name, why(pass, explanation.bounds), pass.does));
   }
-  if (explanation.plan.left_out.empty()) return;
-  print(scene.auto_to_sigma ? "\nleft out         sigma at most  thread-seconds saved  why"
-                            : "\nleft out         why");
-  for (std::size_t i = 0; i < explanation.plan.left_out.size(); ++i) {
-    const LeftOutEffect& effect = explanation.plan.left_out[i];
-    if (!scene.auto_to_sigma) {
-      print(fmt::format("{:<16} {}", effect.name, effect.why));
-      continue;
-    }
-    const double saved = explanation.saved_seconds[i];
-    print(fmt::format("{:<16} {:13.2g}  {:>20}  {}", effect.name, effect.bound_sigma,
-                      saved < kWorthTelling_s ? "under 0.05" : fmt::format("{:.1f}", saved), effect.why));
-  }
+  print_left_out(explanation.left_out, explanation.saved_seconds);
 }
 
 void print_costs(const std::vector<PassCost>& costs) {
@@ -153,7 +142,7 @@ Result<int> run_session(const simulator::Scene& scene, const SimulateArguments& 
   if (arguments.explain && !common.json) {
     const Result<Explanation> explanation = explain(scene);
     if (!explanation) return explanation.error();
-    print_plan(*explanation, scene);
+    print_plan(*explanation);
   }
   const Result<simulator::SimulationReport> report =
       simulator::simulate_session(scene, arguments.output, options);

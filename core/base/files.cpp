@@ -80,6 +80,9 @@ Error cannot_write(const fs::path& file, int error_number) {
     case EFBIG:
       return {ErrorKind::kInputOutput, "cannot write", file.string(), system_reason(error_number),
               "free disk space or choose another disk with -o, then run the same command again"};
+    case ENAMETOOLONG:  // sockets end at 107 bytes with their folder
+      return {ErrorKind::kCannotCreate, "cannot create", file.string(), system_reason(error_number),
+              "choose a shorter name, or a folder whose path is shorter"};
     case EACCES:
     case EPERM:
     case EROFS:
@@ -87,7 +90,6 @@ Error cannot_write(const fs::path& file, int error_number) {
     case ENOTDIR:
     case EISDIR:
     case ELOOP:
-    case ENAMETOOLONG:
     case EEXIST:
     case ENOTEMPTY:
       return {ErrorKind::kCannotCreate, "cannot create", file.string(), system_reason(error_number),

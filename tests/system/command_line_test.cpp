@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -239,6 +240,14 @@ TEST(Demo, LeavesASessionSolvedAtEveryLevelAndSaysWhatEachCosts) {
     EXPECT_EQ(level["true_deg"].is_number(), level["quality"] != "preview") << level;
   }
   EXPECT_THAT(json["levels"].dump(), testing::HasSubstr(json["recommended"].get<std::string>()));
+  // plain.toml names near light and noise; a lens that spreads nothing else would change what is seen.
+  std::map<std::string, double> left_out;
+  for (const Json& effect : json.at("left_out"))
+    left_out[effect["effect"]] = effect["bound_sigma"].is_null() ? 1e9 : effect["bound_sigma"].get<double>();
+  EXPECT_FALSE(left_out.contains("noise")) << json["left_out"];
+  ASSERT_TRUE(left_out.contains("translucency") && left_out.contains("veil")) << json["left_out"];
+  EXPECT_EQ(left_out["translucency"], 0) << "no light enters these yarns";
+  EXPECT_GT(left_out["veil"], 1) << "what the scene does not ask for is told all the same";
 }
 
 struct Verb {

@@ -105,7 +105,8 @@ TEST(Torture, IsMadeByOneVerbWithTheConditionOfTheLightsThatEachPixelKept) {
 
 TEST(Torture, PrintsALineAHardCaseOfEachStage) {
   const Workspace work;
-  const std::vector<std::string> arguments = {"torture", "-o", (work / "torture.weft").string(), "--strict", "-q"};
+  const std::vector<std::string> arguments = {"torture", "-o", (work / "torture.weft").string(), "--strict",
+                                              "-q"};
   const Outcome run = run_weft(arguments);
   ASSERT_EQ(run.exit_code, 0) << run.output;
   std::vector<std::string> with_json = arguments;
@@ -132,6 +133,8 @@ TEST(Torture, IsExplainedPassByPass) {
                                 (work / "explained.weft").string(), "--explain", "-q"});
   ASSERT_EQ(run.exit_code, 0) << run.error;
   EXPECT_NE(run.output.find("damage"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("left out              sigma at most"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("\nvignetting"), std::string::npos) << "unnamed, with its bound: " << run.output;
   EXPECT_NE(run.output.find("makes parts of frames missing, saturated, black or fade"), std::string::npos)
       << run.output;
 }

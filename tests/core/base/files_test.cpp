@@ -143,7 +143,7 @@ TEST(PublishFolder, ReportsANameThatIsTooLong) {
   fs::create_directories(folder / "new");
   std::string said = "an exception";
   EXPECT_NO_THROW(said = outcome(publish_folder(folder / "new", folder / std::string(300, 'n'))));
-  EXPECT_THAT(said, HasSubstr("File name too long"));
+  EXPECT_THAT(said, HasSubstr("File name too long. choose a shorter name"));
 }
 
 TEST(PartialFolder, TakesANameWithASlashAtItsEnd) {

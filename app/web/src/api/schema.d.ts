@@ -7364,7 +7364,7 @@ export interface components {
             /** @description Name of a preset of weft export --list; default those that were exported before */
             presets?: string[];
         };
-        /** Torture scene */
+        /** Hard cases */
         TortureJob: {
             /**
              * @description discriminator enum property added by openapi-typescript

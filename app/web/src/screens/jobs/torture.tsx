@@ -48,7 +48,7 @@ export function HardCases() {
         <p>
           {counted(cases.length, 'case')}, {numberIn(result, 'off')} off their bounds. <a href={addressOfViewer({session: textIn(result, 'session'), solve}, {...FIRST_SIGHT, layer: 'status'})}>Hard pixels in one picture</a>
         </p>
-        <Table caption="Hard cases" heads={['', 'Stage', 'Plain formula', 'weft', 'off, in', 'weft says']}
+        <Table caption="Hard cases" heads={['Case', 'Stage', 'Plain formula', 'weft', 'off, in', 'weft says']}
           rows={cases.map((each) => ({
             key: textIn(each, 'what'),
             cells: [textIn(each, 'what'), textIn(each, 'stage'), offOf(each, 'plain', 'no number'), offOf(each, 'ours', '-'), textIn(each, 'unit'), textIn(each, 'flag')],
