@@ -40,6 +40,11 @@ Result<solve::Ladder> price(const solve::SolveRequest& a, const CommonArguments&
 }
 
 void print_words(const solve::Ladder& ladder, std::optional<std::size_t> chosen) {
+  const Result<std::size_t> recommended = solve::choose_level(ladder, {});
+  const auto mark_of = [&](std::size_t level) {
+    if (chosen) return chosen == level ? "<- chosen" : "";
+    return recommended && *recommended == level ? "<- the one to buy" : "";
+  };
   print(
       "level       degrees        of  seconds     read  prepare    solve    write pictures   report     "
       "sync");
@@ -50,7 +55,7 @@ void print_words(const solve::Ladder& ladder, std::optional<std::size_t> chosen)
         "{:<10} {:>8} {:>9} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g}  {}",
         level.name(), level.error.solved > 0 ? fmt::format("{:.3g}", level.error.total_deg) : "-",
         share_in_words(level.error.solved), s.total(), s.read, s.prepare, s.solve, s.write, s.pictures,
-        s.report, s.sync, chosen == i ? "<- chosen" : ""));
+        s.report, s.sync, mark_of(i)));
     if (!level.note.empty()) print("           " + level.note);
   }
   print(

@@ -388,8 +388,10 @@ Json json_of(const Ladder& ladder, std::optional<std::size_t> chosen) {
            {"total", seconds.total()}}},
          {"note", level.note}});
   }
+  const Result<std::size_t> recommended = choose_level(ladder, {});
   return {{"levels", std::move(levels)},
           {"gates", ladder.gates},
+          {"recommended", recommended ? Json(ladder.levels[*recommended].name()) : Json()},
           {"chosen", chosen ? Json(ladder.levels[*chosen].name()) : Json()}};
 }
 

@@ -109,8 +109,8 @@ struct LevelWish {
 /// half of the cloth; kUsage with what is possible where nothing fits.
 Result<std::size_t> choose_level(const Ladder& ladder, const LevelWish& wish);
 
-/// {"levels": [{"quality", "predicted_deg", "solved", "parts_deg", "seconds", "note"}], "gates", "chosen":
-/// name or null}.
+/// {"levels": [{"quality", "predicted_deg", "solved", "parts_deg", "seconds", "note"}], "gates",
+/// "recommended", "chosen": name or null}. Recommended is what choose_level() takes where nothing is wished.
 Json json_of(const Ladder& ladder, std::optional<std::size_t> chosen);
 
 }  // namespace weft::solve

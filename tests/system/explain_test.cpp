@@ -57,6 +57,8 @@ TEST_F(Explain, PricesEveryLevelAndLeavesNothingBehind) {
   }
   EXPECT_EQ(document.at("gates").size(), 4u);
   EXPECT_TRUE(document.at("chosen").is_null());
+  EXPECT_NE(document["levels"].dump().find(document.at("recommended")), std::string::npos)
+      << document["recommended"];
 }
 
 TEST_F(Explain, KeepsWhatEachLevelMadeOfItsCut) {

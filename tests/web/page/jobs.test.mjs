@@ -54,6 +54,9 @@ test('the levels are priced as the command prices them, as a table and as points
     quality, `${degrees(predicted_deg)} on ${share(solved)}`, ...[parts_deg.noise, parts_deg.model, parts_deg.calibration].map(degrees),
   ]);
   assert.deepEqual(await tableOf(page), expected);
+  const {recommended} = (await jobsOf('price'))[0].result;
+  await page.getByRole('row', {name: new RegExp(`^${recommended}.*the one to buy`)}).waitFor();
+  assert.equal(await page.getByText('the one to buy').count(), 1);
   assert.equal(await page.locator('.ladder .level').count(), expected.length);
   await page.waitForFunction((count) => [...document.querySelectorAll('.crops img')].filter((crop) => crop.naturalWidth > 0).length === count, expected.length);
   assert.deepEqual(await violations(page), []);

@@ -9,6 +9,7 @@ import {Button} from '../../ui/button';
 import {ClothName} from '../../ui/cloth_name';
 import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
+import {textIn} from '../../ui/fields';
 import type {Wish} from '../../ui/request_schema';
 import {degrees, degreesOn} from '../../ui/say';
 import {More} from '../../ui/schema_form';
@@ -64,6 +65,7 @@ interface LevelsProps {
 }
 
 function Levels({job, levels, onSolve}: LevelsProps) {
+  const recommended = textIn(job.result, 'recommended');
   return (
     <>
       {drawable(levels).length > 0 && <LadderPlot levels={drawable(levels)} worthwhile={worthwhile(levels)} onChoose={onSolve} />}
@@ -78,7 +80,7 @@ function Levels({job, levels, onSolve}: LevelsProps) {
             degrees(level.parts_deg.noise),
             degrees(level.parts_deg.model),
             degrees(level.parts_deg.calibration),
-            level.note,
+            [level.quality === recommended && 'the one to buy', level.note].filter(Boolean).join('; '),
             <Button label={`Queue ${level.quality}`} onClick={() => onSolve(level.quality)}>Queue</Button>,
           ],
         }))} />
