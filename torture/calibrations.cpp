@@ -6,6 +6,7 @@
 #include "bench/oracles/oracle_rig.h"
 #include "calibration/camera/lens_fit.h"
 #include "calibration/color/color_fit.h"
+#include "calibration/lights/paper_model.h"
 #include "calibration/response/photon_transfer.h"
 #include "core/image/color_spaces.h"
 #include "core/rig/camera.h"
@@ -143,6 +144,23 @@ HardCase narrow_exposures() {
   return hard;
 }
 
+HardCase led_below_sheet() {
+  NearLight led;
+  led.position_mm = {200, 0, -0.1};
+  led.aim = {-1, 0, 0};
+  const Vec3 normal = {0, 0, 1}, to_led = led.position_mm;
+  const double plain = std::log(dot(normal, to_led) / length(to_led)) - 2 * std::log(length(to_led));
+  const auto ours = calibration::paper_term({{0, 0, 600}, {0, 0, -1}}, led, {}, {});
+  return {.stage = "calibration",
+          .what = "the log of what a LED 0.1 mm below the plane of the sheet gives",
+          .unit = "of the log",
+          .plain = std::isfinite(plain) ? std::optional(std::abs(plain)) : std::nullopt,
+          .ours = ours ? std::optional(ours->log_value) : std::nullopt,
+          .flag = ours ? "" : "not lit",
+          .within = 0,
+          .must_say = "not lit"};
+}
+
 HardCase black_patch() {
   const Xyz black = {0, 0, 0};
   const double plain = black[0] / (black[0] + black[1] + black[2]);
@@ -158,7 +176,7 @@ HardCase black_patch() {
 }  // namespace
 
 std::vector<HardCase> hard_calibrations() {
-  return {wide_lens(), flat_boards(), grey_chart(), narrow_exposures(), black_patch()};
+  return {wide_lens(), flat_boards(), grey_chart(), narrow_exposures(), led_below_sheet(), black_patch()};
 }
 
 }  // namespace weft::torture

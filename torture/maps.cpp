@@ -97,6 +97,21 @@ HardCase black_channel() {
   return hard;
 }
 
+HardCase nearly_alike() {
+  constexpr double kTilt_deg = 1e-3;
+  const double tilt = radians(30), more = radians(30 + kTilt_deg);
+  const auto dot_product = static_cast<float>(std::sin(tilt)) * static_cast<float>(std::sin(more)) +
+                           static_cast<float>(std::cos(tilt)) * static_cast<float>(std::cos(more));
+  const double plain = degrees(double{std::acos(std::min(dot_product, 1.0F))});
+  const double ours = angle_deg({std::sin(tilt), 0, std::cos(tilt)}, {std::sin(more), 0, std::cos(more)});
+  return {.stage = "maps",
+          .what = "two normals a thousandth of a degree apart, compared",
+          .unit = "% of the angle",
+          .plain = 100 * std::abs(plain / kTilt_deg - 1),
+          .ours = 100 * std::abs(ours / kTilt_deg - 1),
+          .within = 1e-6};
+}
+
 /// Threads of 12 pixels with gaps of 12; one pixel of a gap is brighter than can be, one of a thread is no
 /// number.
 HardCase opacity_of_rubbish() {
@@ -127,7 +142,7 @@ HardCase opacity_of_rubbish() {
 }  // namespace
 
 std::vector<HardCase> hard_maps() {
-  return {tilted_sheet(), steep_slopes(), black_channel(), opacity_of_rubbish()};
+  return {tilted_sheet(), steep_slopes(), black_channel(), opacity_of_rubbish(), nearly_alike()};
 }
 
 }  // namespace weft::torture
