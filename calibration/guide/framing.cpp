@@ -64,6 +64,33 @@ std::string name_of_tag(const std::string& dictionary, int id) {
   return fmt::format("{} {}", dictionary, id);
 }
 
+void see_board(View<const std::uint8_t> grey, const PrintedBoard& board, SeenFrame& seen) {
+  const BoardSighting sighting = find_board(grey, board.board);
+  seen.corners = static_cast<int>(sighting.corners.size());
+  if (seen.corners > 2) seen.board = FramedShape{"board", outline_of(sighting.corners, grey.size())};
+  seen.says = seen.corners > 0 ? fmt::format("{} corners of the board are seen.", seen.corners)
+                               : std::string("No board is seen.");
+}
+
+/// By the tags as the camera itself would see them.
+void see_sheet(std::vector<TagSighting> tags, Size size, const SheetAim& aim, SeenFrame& seen) {
+  constexpr double kMiss = 0.005;  // of the frame's width: a finder has few pixels
+  for (TagSighting& tag : tags) {
+    for (PixelPoint& corner : tag.corners_px) {
+      const PixelPoint share = share_of(corner, size);
+      corner = {share.x * aim.camera.size.width - 0.5, share.y * aim.camera.size.height - 0.5};
+    }
+  }
+  const Result<SheetPose> pose =
+      sheet_pose(aim.camera, tags, aim.sheet.tags, "live view", kMiss * aim.camera.size.width);
+  seen.says = "No sheet is seen.";
+  if (!pose) return;
+  const std::array<PixelPoint, 4> outline = outline_of(pose->rig_from_sheet, aim.sheet.sheet, aim.camera);
+  seen.sheet = FramedShape{"sheet", {outline.begin(), outline.end()}};
+  const std::string wrong = departure_of(lay_of(pose->rig_from_sheet, aim.sheet.sheet), aim);
+  seen.says = wrong.empty() ? "The sheet lies as asked." : fmt::format("Not yet: {}.", wrong);
+}
+
 Json json_of(const FrameGrid& grid) {
   if (grid.values.empty()) return Json();
   Json values = Json::array();
@@ -99,7 +126,7 @@ Result<KnownFrame> known_frame(const fs::path& folder) {
 }
 
 Result<SeenFrame> seen_frame(const std::string& jpeg, const std::optional<KnownFrame>& known,
-                             const std::optional<PrintedBoard>& board) {
+                             const AimedThing& aim) {
   const std::optional<Image<std::uint8_t>> picture = finder_picture(jpeg);
   if (!picture) {
     return Error{ErrorKind::kProtocol, "the finder gave no picture", "live view", "it is no JPEG",
@@ -110,6 +137,9 @@ Result<SeenFrame> seen_frame(const std::string& jpeg, const std::optional<KnownF
   std::set<std::string> dictionaries = {kTableTags};
   if (known) {
     for (const Fiducial& each : known->fiducials) dictionaries.insert(each.dictionary);
+  }
+  if (aim.sheet) {
+    for (const SheetTag& each : aim.sheet->sheet.tags) dictionaries.insert(each.dictionary);
   }
   SeenFrame seen;
   std::vector<TagSighting> tags;
@@ -128,10 +158,10 @@ Result<SeenFrame> seen_frame(const std::string& jpeg, const std::optional<KnownF
       seen.fiducials = off->tags;
     }
   }
-  if (!board) return seen;
-  const BoardSighting sighting = find_board(grey, board->board);
-  seen.corners = static_cast<int>(sighting.corners.size());
-  if (seen.corners > 2) seen.board = FramedShape{"board", outline_of(sighting.corners, size)};
+  if (aim.board) see_board(grey, *aim.board, seen);
+  if (aim.sheet) see_sheet(std::move(tags), size, *aim.sheet, seen);
+  if (!seen.tags.empty())
+    seen.says += fmt::format("{}{} tags.", seen.says.empty() ? "" : " ", seen.tags.size());
   return seen;
 }
 
@@ -159,7 +189,9 @@ Json json_of(const SeenFrame& seen) {
           {"off_mm", seen.off_mm ? Json(*seen.off_mm) : Json()},
           {"fiducials", seen.fiducials},
           {"board", seen.board ? json_of(*seen.board) : Json()},
-          {"corners", seen.corners}};
+          {"corners", seen.corners},
+          {"sheet", seen.sheet ? json_of(*seen.sheet) : Json()},
+          {"says", seen.says}};
 }
 
 }  // namespace weft::calibration

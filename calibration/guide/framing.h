@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/camera/markers.h"
+#include "calibration/guide/sheet_lay.h"
 #include "calibration/run/board_photographs.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
@@ -43,6 +44,12 @@ struct KnownFrame {
 /// Errors: those of read_calibration(); kBadData where it knows no camera.
 Result<KnownFrame> known_frame(const std::filesystem::path& calibration);
 
+/// What a person is about to lay there.
+struct AimedThing {
+  std::optional<PrintedBoard> board;
+  std::optional<SheetAim> sheet;
+};
+
 /// What a picture shows.
 struct SeenFrame {
   std::vector<FramedShape> tags;
@@ -51,17 +58,19 @@ struct SeenFrame {
   int fiducials = 0;                 ///< that these are
   std::optional<FramedShape> board;  ///< around the corners that were found of it
   int corners = 0;
+  std::optional<FramedShape> sheet;  ///< around it
+  std::string says;  ///< to the person: what is seen, and how a sheet lies otherwise than asked
 };
 
-/// Looks at a picture of the finder (JPEG) for tags of the table, and for a board. kProtocol where it is no
-/// picture.
+/// Looks at a picture of the finder (JPEG) for tags of the table, and for what is to be laid there. kProtocol
+/// where it is no picture.
 Result<SeenFrame> seen_frame(const std::string& jpeg, const std::optional<KnownFrame>& known,
-                             const std::optional<PrintedBoard>& board);
+                             const AimedThing& aim);
 
 /// {"width_mm", "height_mm", "light", "normal_deg" {"columns", "rows", "values"}, "tags" [{"name",
 /// "corners"}]}.
 Json json_of(const KnownFrame& known);
-/// {"tags", "off_mm", "fiducials", "board", "corners"}.
+/// {"tags", "off_mm", "fiducials", "board", "corners", "sheet", "says"}.
 Json json_of(const SeenFrame& seen);
 
 }  // namespace weft::calibration

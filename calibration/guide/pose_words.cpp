@@ -29,15 +29,14 @@ std::string place_of(PixelPoint p, Size size) {
   return fmt::format("at the {}{}{}", row, *row == 0 ? "" : " ", column);
 }
 
-/// Which way in the picture from one place to another.
+}  // namespace
+
 std::string edge_towards(PixelPoint from, PixelPoint to) {
   constexpr std::array kEdges = {"right edge", "lower right corner", "lower edge", "lower left corner",
                                  "left edge",  "upper left corner",  "upper edge", "upper right corner"};
   const double turn = std::atan2(to.y - from.y, to.x - from.x) / (std::numbers::pi / 4);
   return kEdges[static_cast<std::size_t>(std::lround(turn) + 8) % 8];
 }
-
-}  // namespace
 
 std::string words_of(const BoardPose& pose, const CameraModel& camera) {
   const PixelPoint centre = centre_of(pose);

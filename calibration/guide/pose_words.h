@@ -11,4 +11,7 @@ namespace weft::calibration {
 /// does who looks at the camera's picture.
 std::string words_of(const BoardPose& pose, const CameraModel& camera);
 
+/// The edge or corner of a thing in a picture that lies that way from its centre: "left edge".
+std::string edge_towards(PixelPoint from, PixelPoint to);
+
 }  // namespace weft::calibration

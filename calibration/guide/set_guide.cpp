@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <set>
 #include <span>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "calibration/guide/pose_words.h"
 #include "calibration/guide/response_series.h"
 #include "calibration/guide/scan_judgement.h"
+#include "calibration/run/check_result.h"
 #include "calibration/run/sheet_files.h"
 #include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
@@ -31,7 +31,6 @@ namespace fs = std::filesystem;
 constexpr double kTooAlike = 0.7;      // calibration::BoardGuidance::alike
 constexpr double kMostMisfit = 2.5;    // times the median residual of the others
 constexpr std::size_t kToCompare = 4;  // views whose median says what a residual is
-constexpr double kSamePose_deg = 3, kAsAsked_deg = 9;
 
 std::vector<std::string> names_in(const fs::path& folder, bool sessions) {
   constexpr std::array kNoPhotographs = {".toml", ".json"};
@@ -85,6 +84,13 @@ Result<CameraModel> camera_known_before(const PhotographSet& set) {
 
 Json json_of(const PixelPoint& p) {
   return {std::round(10 * p.x) / 10, std::round(10 * p.y) / 10};
+}
+
+Json json_of(const std::array<PixelPoint, 4>& outline) {
+  Json corners = Json::array();
+  for (const PixelPoint& p : outline)
+    corners.push_back({std::round(1e5 * p.x) / 1e5, std::round(1e5 * p.y) / 1e5});
+  return corners;
 }
 
 Json json_of(const BoardPose& pose, Size size) {
@@ -255,29 +261,37 @@ Result<SetStanding> SetGuide::look_at_boards(const PhotographSet& set) {
 
 namespace {
 
-/// How a sheet is to lie.
-struct WantedSheet {
-  const char* name;
-  double tilt_deg, azimuth_deg;
-  const char* says;
-};
+constexpr const char *kLeft = "left edge", *kRight = "right edge", *kNear = "edge towards you",
+                     *kFar = "far edge";
+constexpr double kTilted_deg = 9;
 constexpr std::array kSheets = {
-    WantedSheet{"sheet01", 0, 0, "lay the white sheet flat on the table, in the middle of the picture"},
-    WantedSheet{"sheet02", 20, 0, "tilt the sheet by 20 degrees: raise its left edge"},
-    WantedSheet{"sheet03", 20, 180, "tilt the sheet by 20 degrees: raise its right edge"},
-    WantedSheet{"sheet04", 20, 90, "tilt the sheet by 20 degrees: raise the edge towards you"},
-    WantedSheet{"sheet05", 20, 270, "tilt the sheet by 20 degrees: raise the far edge"}};
+    WantedLay{.name = "sheet01",
+              .says = "lay the white sheet flat on the table, in the middle of the picture",
+              .is_in_middle = true},
+    WantedLay{"sheet02", 20, 0, kLeft, "tilt the sheet by 20 degrees: raise its left edge", kTilted_deg},
+    WantedLay{"sheet03", 20, 180, kRight, "tilt the sheet by 20 degrees: raise its right edge", kTilted_deg},
+    WantedLay{"sheet04", 20, 90, kNear, "tilt the sheet by 20 degrees: raise the edge towards you",
+              kTilted_deg},
+    WantedLay{"sheet05", 20, 270, kFar, "tilt the sheet by 20 degrees: raise the far edge", kTilted_deg}};
 constexpr std::array kChecks = {
-    WantedSheet{"turned", 0, 0, "lay the sheet flat again, turned by 90 degrees in its plane"},
-    WantedSheet{"other", 0, 0, "lay another white sheet flat on the table; the same one turned over will do"},
-    WantedSheet{"plane", 15, 210, "tilt the sheet by about 15 degrees, raising a corner"}};
+    WantedLay{.name = "turned",
+              .says = "lay the sheet flat again, turned by 90 degrees in its plane",
+              .is_turned = true},
+    WantedLay{.name = "other",
+              .says = "lay another white sheet flat on the table; the same one turned over will do"},
+    WantedLay{"plane", 15, 210, "", "tilt the sheet by about 15 degrees, raising a corner", 8}};
+// By a camera that may have been knocked.
 constexpr std::array kMoved = {
-    WantedSheet{"moved", 0, 0,
-                "clear the table but for its tags and patches, and lay the white sheet flat in the middle"},
-    WantedSheet{"tilted", 20, 0, "tilt the sheet by 20 degrees: raise its left edge"},
-    WantedSheet{"turned", 20, 90, "tilt the sheet by 20 degrees: raise the edge towards you"}};
+    WantedLay{
+        .name = "moved",
+        .says = "clear the table but for its tags and patches, and lay the white sheet flat in the middle",
+        .within_deg = kTilted_deg,
+        .within_mm = 50},
+    WantedLay{"tilted", 20, 0, kLeft, "tilt the sheet by 20 degrees: raise its left edge", kTilted_deg},
+    WantedLay{"turned", 20, 90, kNear, "tilt the sheet by 20 degrees: raise the edge towards you",
+              kTilted_deg}};
 
-std::span<const WantedSheet> wanted_by(SetPart part) {
+std::span<const WantedLay> wanted_by(SetPart part) {
   if (part == SetPart::kSheet) return kSheets;
   if (part == SetPart::kCheck) return kChecks;
   return kMoved;
@@ -319,14 +333,15 @@ SetPhotograph judged(const fs::path& folder, const TaggedSheet& sheet, const Cam
   photograph.why = session ? lamp_in(*session) : session.error().message();
   if (photograph.why.empty()) photograph.why = unevenness_of(*session, camera, sheet, *pose);
   photograph.is_used = photograph.why.empty();
-  constexpr double kDegrees = 180 / std::numbers::pi;
-  const Mat3& r = pose->rig_from_sheet.rotation;
-  const Vec3 normal = {r[0][2], r[1][2], r[2][2]};
+  photograph.lay = lay_of(pose->rig_from_sheet, sheet.sheet);
+  const Vec3 normal = photograph.lay->normal;
   photograph.facts = {{"tags", pose->tags},
-                      {"tilt_deg", kDegrees * std::acos(std::clamp(normal.z, -1.0, 1.0))},
-                      {"azimuth_deg", kDegrees * std::atan2(normal.y, normal.x)},
+                      {"tilt_deg", angle_deg(normal, {0, 0, 1})},
+                      {"azimuth_deg", degrees(std::atan2(normal.y, normal.x))},
+                      {"turn_deg", photograph.lay->turn_deg},
                       {"residual_px", pose->residual_px},
-                      {"normal", {normal.x, normal.y, normal.z}}};
+                      {"normal", {normal.x, normal.y, normal.z}},
+                      {"outline", json_of(outline_of(pose->rig_from_sheet, sheet.sheet, camera))}};
   return photograph;
 }
 
@@ -342,10 +357,17 @@ SetPhotograph judged_chart(const Session& session, const PhotographSet& set) {
   return photograph;
 }
 
-double degrees_between(const Json& a, const Json& b) {
-  double cosine = 0;
-  for (std::size_t i = 0; i < 3; ++i) cosine += a[i].get<double>() * b[i].get<double>();
-  return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
+/// What is new to the LEDs is another tilt, or another part of the paper.
+bool is_alike(const SheetLay& a, const SheetLay& b) {
+  constexpr double kSameTilt_deg = 3, kSameTurn_deg = 30;
+  return angle_deg(a.normal, b.normal) < kSameTilt_deg && between_deg(a.turn_deg, b.turn_deg) < kSameTurn_deg;
+}
+
+/// Nobody lays a sheet down twice so alike.
+bool is_untouched(const SheetLay& a, const SheetLay& b) {
+  constexpr double kSame_deg = 0.5, kSame_mm = 0.5;
+  return angle_deg(a.normal, b.normal) < kSame_deg && between_deg(a.turn_deg, b.turn_deg) < kSame_deg &&
+         length(a.centre_mm - b.centre_mm) < kSame_mm;
 }
 
 /// A sheet that lies as one before it tells nothing new of the LEDs.
@@ -354,21 +376,51 @@ void judge_likeness(SetStanding& standing) {
     SetPhotograph& one = standing.photographs[i];
     for (std::size_t before = 0; before < i && one.is_used; ++before) {
       const SetPhotograph& other = standing.photographs[before];
-      if (!other.is_used || degrees_between(one.facts["normal"], other.facts["normal"]) > kSamePose_deg)
-        continue;
+      if (!other.is_used || !is_alike(*one.lay, *other.lay)) continue;
       one.is_used = false;
       one.why = fmt::format("the sheet lies as it did in {}", other.name);
     }
   }
 }
 
-/// Whether a sheet lies about as was asked.
-bool lies_as(const WantedSheet& wanted, const SetPhotograph& sheet) {
-  constexpr double kRadians = std::numbers::pi / 180;
-  const double tilt = wanted.tilt_deg * kRadians, azimuth = wanted.azimuth_deg * kRadians;
-  const Json normal = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
-                       std::cos(tilt)};
-  return degrees_between(normal, sheet.facts["normal"]) < kAsAsked_deg;
+/// Sheets are held against what was asked. Of a proof one that lies otherwise is not used; else it tells of
+/// the LEDs all the same, and what was asked is asked again.
+void judge_departures(const PhotographSet& set, SheetAim aim, SetStanding& standing) {
+  const bool is_proof = set.part == SetPart::kCheck;
+  std::vector<const SetPhotograph*> before;
+  for (const WantedLay& wanted : wanted_by(set.part)) {
+    aim.wanted = wanted;
+    for (SetPhotograph& photograph : standing.photographs) {
+      if (!photograph.lay || !photograph.name.starts_with(wanted.name)) continue;
+      std::string wrong = departure_of(*photograph.lay, aim);
+      for (const SetPhotograph* other : before) {
+        if (is_proof && wrong.empty() && is_untouched(*photograph.lay, *other->lay))
+          wrong = fmt::format("nothing has changed since {}: lay another sheet", other->name);
+      }
+      if (wrong.empty()) continue;
+      if (!photograph.is_used) {
+        photograph.why += "; " + wrong;
+      } else if (is_proof) {
+        photograph.is_used = false;
+        photograph.why = std::move(wrong);
+      } else {
+        photograph.facts["note"] = "it counts, and was asked otherwise: " + wrong;
+      }
+    }
+    for (const SetPhotograph& photograph : standing.photographs) {
+      if (photograph.is_used && photograph.lay && photograph.name.starts_with(wanted.name))
+        before.push_back(&photograph);
+    }
+  }
+}
+
+/// Whether a sheet that is used lies as is wanted.
+bool is_met(const PhotographSet& set, const SheetAim& aim, const SetStanding& standing) {
+  return std::ranges::any_of(standing.photographs, [&](const SetPhotograph& p) {
+    if (!p.is_used) return false;
+    return set.part == SetPart::kCheck ? p.name.starts_with(aim.wanted.name)
+                                       : p.lay && departure_of(*p.lay, aim).empty();
+  });
 }
 
 /// The name of a scan that was begun for this, or one that nothing in the set has.
@@ -382,11 +434,13 @@ std::string unfinished_or_free(const PhotographSet& set, const std::string& name
   }
 }
 
-SetStep step_to(const WantedSheet& wanted, std::string session) {
+SetStep step_to(const SheetAim& aim, std::string session) {
   return {StepKind::kScan,
           std::move(session),
-          wanted.says,
-          {{"tilt_deg", wanted.tilt_deg}, {"azimuth_deg", wanted.azimuth_deg}}};
+          aim.wanted.says,
+          {{"tilt_deg", aim.wanted.tilt_deg},
+           {"azimuth_deg", aim.wanted.azimuth_deg},
+           {"outline", json_of(outline_of(aim))}}};
 }
 
 }  // namespace
@@ -409,15 +463,14 @@ Result<SetStanding> SetGuide::look_at_sheets(const PhotographSet& set) {
     }
     standing.photographs.push_back(sessions_.at(name));
   }
+  SheetAim aim = {*sheet, *camera, {}, fitted_turns_deg(set.from)};
   if (set.part != SetPart::kCheck) judge_likeness(standing);
-  const auto has = [&](const WantedSheet& wanted) {
-    return std::ranges::any_of(standing.photographs, [&](const SetPhotograph& p) {
-      return p.is_used &&
-             (set.part == SetPart::kSheet ? lies_as(wanted, p) : p.name.starts_with(wanted.name));
-    });
-  };
-  for (const WantedSheet& each : wanted_by(set.part)) {
-    if (!standing.next && !has(each)) standing.next = step_to(each, unfinished_or_free(set, each.name));
+  judge_departures(set, aim, standing);
+  for (const WantedLay& each : wanted_by(set.part)) {
+    aim.wanted = each;
+    if (standing.next || is_met(set, aim, standing)) continue;
+    standing.next = step_to(aim, unfinished_or_free(set, each.name));
+    standing.aim = aim;
   }
   standing.is_done = !standing.next;
   add_left_out(set, standing);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/guide/photograph_set.h"
+#include "calibration/guide/sheet_lay.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/rig/calibration.h"
@@ -22,6 +23,7 @@ struct SetPhotograph {
   bool is_left_out = false;  ///< a person said so
   std::string why;           ///< it is not used; without a full stop
   Json facts = Json::object();
+  std::optional<SheetLay> lay = {};  ///< of a sheet that is seen
 };
 
 /// How the photographs of a step are taken.
@@ -43,6 +45,7 @@ struct SetStanding {
   std::vector<SetPhotograph> photographs;
   Json figures = Json::object();  ///< of the part: coverage, what is predicted, what is asked
   std::optional<SetStep> next;    ///< none: all is there
+  std::optional<SheetAim> aim;    ///< of the next step, where a sheet is to be laid
   bool is_done = false;           ///< what is there suffices
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -37,6 +38,12 @@ inline Vec3 v_axis(const Pose& rig_from_sheet) {
 }
 inline Vec3 normal_of(const Pose& rig_from_sheet) {
   return rig_from_sheet.rotation * Vec3{0, 0, 1};
+}
+
+/// How a sheet is turned: its u axis, from x towards y, degrees.
+inline double turn_deg(const Pose& rig_from_sheet) {
+  const Vec3 u = u_axis(rig_from_sheet);
+  return degrees(std::atan2(u.y, u.x));
 }
 
 /// A line of sight in the rig frame.

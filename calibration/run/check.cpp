@@ -380,11 +380,12 @@ struct Look {
 /// What the sheet reads in one more session.
 Result<void> add_sheet(const solve::Photographs& loaded, Size size, const fs::path& session,
                        const Calibration& calibration, const TaggedSheet& sheet, const JobContext& context,
-                       RigEvidence& evidence) {
+                       RigEvidence& evidence, std::vector<Pose>& sheets) {
   // Every reading is weighed against every other one: about 10 squares by 7, whatever the frame.
   const int side = std::max(std::max(size.width, size.height) / 10 & ~1, 16);
   const auto seen = sheet_evidence(calibration, loaded, sheet, side, session.string(), context);
   if (!seen) return seen.error();
+  sheets.push_back(seen->rig_from_sheet);
   for (LitPlace& place : places_of(*seen, *calibration.camera)) evidence.places.push_back(std::move(place));
   return {};
 }
@@ -398,7 +399,7 @@ Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
   const Result<solve::Photographs> loaded = solve::load_photographs(*plan, context);
   if (!loaded) return loaded.error();
   const fs::path folder = options.from.empty() ? first / "calibration" : options.from;
-  Look out = {{{}, {}, plan->calibration, folder}, loaded->conditions.warnings, plan->lit.front().time};
+  Look out = {{{}, {}, plan->calibration, folder, {}}, loaded->conditions.warnings, plan->lit.front().time};
   const Calibration& calibration = out.rig.calibration;
   const Result<RigSightings> sightings = sightings_in(calibration, *loaded);
   if (!sightings) return sightings.error();
@@ -411,14 +412,15 @@ Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
         read_sheet_file(options.sheet.empty() ? options.session / "sheet.toml" : options.sheet);
     if (!sheet) return sheet.error();
     delta = sheet->delta.value_or(delta);
-    Result<void> added = add_sheet(*loaded, plan->size, first, calibration, *sheet, context, evidence);
+    Result<void> added =
+        add_sheet(*loaded, plan->size, first, calibration, *sheet, context, evidence, out.rig.sheets);
     for (const fs::path& pose : std::span(*sessions).subspan(1)) {
       if (!added) break;
       const Result<solve::SolvePlan> another = solve::plan_session({pose, folder, {}});
       if (!another) return another.error();
       const Result<solve::Photographs> read = solve::load_photographs(*another, context);
       if (!read) return read.error();
-      added = add_sheet(*read, another->size, pose, calibration, *sheet, context, evidence);
+      added = add_sheet(*read, another->size, pose, calibration, *sheet, context, evidence, out.rig.sheets);
     }
     if (!added) return std::move(added).error();
   }

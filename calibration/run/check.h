@@ -59,6 +59,7 @@ struct RigCheck {
   MovementCost cost;
   Calibration calibration;     ///< that was checked
   std::filesystem::path from;  ///< its folder
+  std::vector<Pose> sheets;    ///< rig_from_sheet of each that was seen
 };
 Result<RigCheck> look_at_rig(const CheckRigOptions& options, const JobContext& context);
 

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "calibration/checks/flatness.h"
 #include "core/base/files.h"
 #include "core/base/iso_time.h"
 #include "core/describe/field_json.h"
@@ -14,9 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The numbers of the report of a calibration's lights; empty where there is none.
-Json lights_numbers(const fs::path& calibration) {
-  const Result<Json> report = read_json(calibration / "report" / "lights.json", "weft.calibration-report", 1);
+constexpr const char* kLightsReport = "lights.json";
+
+/// The numbers of a report of a calibration; empty where there is none.
+Json numbers_in(const fs::path& calibration, const char* name) {
+  const Result<Json> report = read_json(calibration / "report" / name, "weft.calibration-report", 1);
   if (!report || !report->contains("numbers") || !(*report)["numbers"].is_object()) return Json::object();
   return (*report)["numbers"];
 }
@@ -34,13 +37,13 @@ Result<void> write_check_result(const fs::path& folder, const std::string& of, c
 }
 
 double reported_delta(const fs::path& calibration) {
-  const Json numbers = lights_numbers(calibration);
+  const Json numbers = numbers_in(calibration, kLightsReport);
   return numbers.contains("delta") && numbers["delta"].is_number() ? numbers["delta"].get<double>() : 0;
 }
 
 std::set<std::string> fitted_sha256(const fs::path& calibration) {
   std::set<std::string> digests;
-  const Json numbers = lights_numbers(calibration);
+  const Json numbers = numbers_in(calibration, kLightsReport);
   if (!numbers.contains("fitted")) return digests;
   for (const Json& session : numbers["fitted"]) {
     if (!session.is_object() || !session.contains("lit_sha256")) continue;
@@ -49,6 +52,19 @@ std::set<std::string> fitted_sha256(const fs::path& calibration) {
     }
   }
   return digests;
+}
+
+std::vector<double> fitted_turns_deg(const fs::path& calibration) {
+  std::vector<double> turns_deg;
+  for (const char* report : {kLightsReport, "update.json"}) {
+    for (const Json& sheet : numbers_in(calibration, report).value("sheets", Json::array())) {
+      if (!sheet.is_object()) continue;
+      const Json tilt = sheet.value("tilt_deg", Json()), turn = sheet.value("turn_deg", Json());
+      if (tilt.is_number() && turn.is_number() && tilt.get<double>() < kTiltedFrom_deg)
+        turns_deg.push_back(turn.get<double>());
+    }
+  }
+  return turns_deg;
 }
 
 }  // namespace weft::calibration

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "calibration/run/calibration_report.h"
 #include "calibration/run/last_check.h"
@@ -24,5 +25,9 @@ double reported_delta(const std::filesystem::path& calibration);
 
 /// SHA-256 of the lit frames that `calibrate lights` fitted, by the same report; none where it is not there.
 std::set<std::string> fitted_sha256(const std::filesystem::path& calibration);
+
+/// How flat sheets were turned that a calibration rests on (turn_deg()), by the reports of its lights and of
+/// its last update; none where neither says.
+std::vector<double> fitted_turns_deg(const std::filesystem::path& calibration);
 
 }  // namespace weft::calibration

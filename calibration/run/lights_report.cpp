@@ -224,6 +224,7 @@ Json numbers_of(const LightsEvidence& e) {
       numbers["sheets"].push_back({{"session", e.captures[j]},
                                    {"tilt_deg", tilt_deg(pose)},
                                    {"azimuth_deg", azimuth_deg(pose)},
+                                   {"turn_deg", turn_deg(pose)},
                                    {"residual", rms_of_sheet(e, j)}});
     }
   }

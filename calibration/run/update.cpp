@@ -114,6 +114,10 @@ CalibrationReport report_of(const RigCheck& rig, const fs::path& session) {
                     {"chi_square_after", rig.movement.chi_square_after},
                     {"cost_mean_deg", rig.cost.mean_deg},
                     {"cost_worst_deg", rig.cost.worst_deg}};
+  for (const Pose& sheet : rig.sheets) {
+    report.numbers["sheets"].push_back(
+        {{"tilt_deg", angle_deg(normal_of(sheet), {0, 0, 1})}, {"turn_deg", turn_deg(sheet)}});
+  }
   for (const RigChange& change : rig.movement.changes) {
     section.paragraphs.push_back(verdict_of(change).text + ".");
     report.numbers["changes"].push_back(json_of(change));

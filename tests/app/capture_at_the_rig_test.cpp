@@ -247,6 +247,43 @@ TEST_F(CaptureAtTheRig, TellsASheetThatLiesAsBefore) {
   EXPECT_EQ(again["next"]["name"], "sheet02_2.weft");
 }
 
+TEST_F(CaptureAtTheRig, HoldsTheSheetsOfAProofAgainstWhatWasAsked) {
+  ASSERT_TRUE(begin("check", "sheet.toml")["next"]["pose"]["outline"].is_array());
+  lay("sheet tilt=14 azimuth=0");
+  Json set = photograph();
+  EXPECT_THAT(of(set, "turned.weft")["why"].get<std::string>(),
+              HasSubstr("tilted by 14 degrees, its left edge"));
+  EXPECT_TRUE(of(set, "turned.weft")["left_out"]) << set;
+  lay("sheet turn=90");
+  set = photograph();
+  EXPECT_TRUE(of(set, "turned_2")["used"]) << of(set, "turned_2");
+  EXPECT_NEAR(of(set, "turned_2")["facts"]["turn_deg"].get<double>(), 90, 0.2);
+  set = photograph();
+  EXPECT_THAT(of(set, "other.weft")["why"].get<std::string>(),
+              HasSubstr("nothing has changed since turned_2"));
+  lay("sheet other=1");
+  EXPECT_TRUE(of(photograph(), "other_2")["used"]);
+  set = photograph();
+  EXPECT_THAT(of(set, "plane.weft")["why"].get<std::string>(), HasSubstr("lies flat: raise an edge"));
+  lay("sheet tilt=15 azimuth=210");
+  set = photograph();
+  EXPECT_TRUE(set["done"]) << set;
+}
+
+TEST_F(CaptureAtTheRig, AsksAgainForASheetThatLiesOtherwiseAndKeepsIt) {
+  begin("moved", "sheet.toml");
+  lay("sheet");
+  EXPECT_FALSE(of(photograph(), "moved")["facts"].contains("note"));
+  lay("sheet tilt=20 azimuth=180");
+  const Json other = photograph();
+  EXPECT_TRUE(of(other, "tilted")["used"]) << other;
+  EXPECT_THAT(of(other, "tilted")["facts"]["note"].get<std::string>(),
+              HasSubstr("right edge is raised: raise its left edge"));
+  EXPECT_EQ(other["next"]["name"], "tilted_2.weft");
+  lay("sheet tilt=20 azimuth=0");
+  EXPECT_EQ(photograph()["next"]["name"], "turned.weft");
+}
+
 /// With a finder that has as many pixels as a camera's.
 class FramingAtTheRig : public CaptureAtTheRig {
  protected:
@@ -280,6 +317,16 @@ TEST_F(FramingAtTheRig, SeesInTheFinderThatTheCameraWasKnocked) {
   ASSERT_TRUE(served_.rig().say("knock camera x=3 y=-2"));
   const Json knocked = seen_once(is_off(std::hypot(3, 2)));
   EXPECT_TRUE(is_off(std::hypot(3, 2))(knocked)) << knocked;
+
+  begin("moved", "sheet.toml");
+  lay("sheet tilt=20 azimuth=0");
+  const auto tells_tilt = [](const Json& seen) {
+    return seen["says"].get<std::string>().find("tilted by 20 degrees, its left edge raised") !=
+           std::string::npos;
+  };
+  const Json tilted = seen_once(tells_tilt);
+  EXPECT_TRUE(tells_tilt(tilted)) << tilted;
+  EXPECT_TRUE(tilted["sheet"].is_object()) << tilted;
 
   begin("board", "board.toml");
   lay("board");

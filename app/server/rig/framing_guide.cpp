@@ -26,11 +26,10 @@ Result<Json> FramingGuide::known() {
   return known ? Result<Json>(json_of(*known)) : known.error();
 }
 
-Result<Json> FramingGuide::seen(const std::string& jpeg,
-                                const std::optional<calibration::PrintedBoard>& board) {
+Result<Json> FramingGuide::seen(const std::string& jpeg, const calibration::AimedThing& aim) {
   const Result<calibration::KnownFrame> known = frame();
   const Result<calibration::SeenFrame> seen = calibration::seen_frame(
-      jpeg, known ? std::optional(*known) : std::optional<calibration::KnownFrame>(), board);
+      jpeg, known ? std::optional(*known) : std::optional<calibration::KnownFrame>(), aim);
   return seen ? Result<Json>(json_of(*seen)) : seen.error();
 }
 

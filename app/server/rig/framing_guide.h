@@ -21,7 +21,7 @@ class FramingGuide {
   /// What the rig's calibration knows of the frame. kNoInput where the rig has none; those of known_frame().
   Result<Json> known();
   /// What this picture of the finder shows.
-  Result<Json> seen(const std::string& jpeg, const std::optional<calibration::PrintedBoard>& board);
+  Result<Json> seen(const std::string& jpeg, const calibration::AimedThing& aim);
 
  private:
   Result<calibration::KnownFrame> frame();

@@ -155,15 +155,16 @@ Json SetKeeper::document() const {
   return work_ ? document_locked() : Json();
 }
 
-std::optional<calibration::PrintedBoard> SetKeeper::board() const {
+calibration::AimedThing SetKeeper::aim() const {
   std::filesystem::path file;
   {
     const std::lock_guard lock(mutex_);
-    if (!work_ || work_->set.part != calibration::SetPart::kBoard) return std::nullopt;
+    if (!work_) return {};
+    if (work_->set.part != calibration::SetPart::kBoard) return {{}, work_->standing.aim};
     file = work_->set.board_file();
   }
   const Result<calibration::PrintedBoard> board = calibration::read_board_file(file, {});
-  return board ? std::optional(*board) : std::nullopt;
+  return {board ? std::optional(*board) : std::nullopt, {}};
 }
 
 void SetKeeper::close() {

@@ -7,6 +7,7 @@
 
 #include "app/server/http/event_log.h"
 #include "app/server/rig/rig_keeper.h"
+#include "calibration/guide/framing.h"
 #include "calibration/guide/photograph_set.h"
 #include "calibration/guide/set_guide.h"
 #include "capture/rig.h"
@@ -40,8 +41,8 @@ class SetKeeper {
   /// {"name", "part", "folder", "from", "busy", "error", "photographs", "figures", "next", "done"}.
   /// Null where none is worked on.
   Json document() const;
-  /// The board of the set that is worked on, where it is of one.
-  std::optional<calibration::PrintedBoard> board() const;
+  /// What the next step of the set that is worked on asks to be laid.
+  calibration::AimedThing aim() const;
   void close();
 
  private:

@@ -255,6 +255,13 @@ test('a rig that was knocked is brought back: seen, fitted, proven, accepted', a
     await calculate(page, 'Calculate: fitted again');
     await page.getByRole('button', {name: 'Go on: proof'}).click();
     await begin(page);
+    await page.locator('.aim .wanted').waitFor({state: 'attached'});
+    await rig.inject('table sheet');
+    await page.getByRole('button', {name: 'Look through the camera'}).click();
+    await page.getByText('Not yet: the sheet lies turned as before: turn it by 90 degrees.').waitFor();
+    await picture(page, 'calibrate_turn_it');
+    assert.match(await take(page), /not used: the sheet lies turned as before: turn it by 90 degrees/);
+    assert.equal(await page.getByText('No board is seen').count(), 0);
     await lay(rig, page, 'sheet turn=90');
     await lay(rig, page, 'sheet other=1');
     await lay(rig, page, 'sheet other=1 tilt=15 azimuth=210');
@@ -356,7 +363,7 @@ test('a bare rig is calibrated with nothing but the page', {skip: !isSoak && 'it
     await goOn(page, 'colour');
     await begin(page, described(rig, 'chart'));
     await lay(rig, page, 'chart');
-    await page.getByText('The line is where the last photograph has the chart.').waitFor();
+    await page.getByText('The thin line is where it lay in the last photograph.').waitFor();
     await page.locator('.aim .found').waitFor({state: 'attached'});
     await picture(page, 'calibrate_chart');
     await calculate(page, 'Calculate: colour');

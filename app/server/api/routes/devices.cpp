@@ -114,7 +114,7 @@ Result<Attendance::Look> next_look(const RigParts& parts, const Call& call) {
 Result<Reply> live_framing(const RigParts& parts, const Call& call) {
   const Result<Attendance::Look> look = next_look(parts, call);
   if (!look) return look.error();
-  Result<Json> seen = parts.framing.seen(look->jpeg, parts.sets.board());
+  Result<Json> seen = parts.framing.seen(look->jpeg, parts.sets.aim());
   if (!seen) return std::move(seen).error();
   (*seen)["frame"] = look->number;
   return json_reply(*seen);

@@ -1255,7 +1255,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** What the finder's next picture shows of the table's tags and of the board of the set that is worked on */
+        /** What the finder's next picture shows of the table's tags and of the board or sheet that the set that is worked on asks for */
         get: {
             parameters: {
                 query?: {
@@ -1286,6 +1286,10 @@ export interface paths {
                             board: components["schemas"]["FramedShape"] | null;
                             /** @description Of the board, that were found */
                             corners: number;
+                            /** @description Around the sheet */
+                            sheet: components["schemas"]["FramedShape"] | null;
+                            /** @description To the person: what is seen, and how a sheet lies otherwise than asked */
+                            says: string;
                         };
                     };
                 };

@@ -28,10 +28,11 @@ export function FinderView({wanted, found}: FinderViewProps) {
     if (shown && picture.value) shown.getContext('2d')?.drawImage(picture.value, 0, 0, shown.width, shown.height);
   });
   const seen = framing.value;
+  const says = seen?.says || 'Nothing is seen yet.';
   return (
     <figure class="aim">
       <div class="sight">
-        <canvas ref={canvas} width={640} height={424} role="img" aria-label={wordsOf(seen)} />
+        <canvas ref={canvas} width={640} height={424} role="img" aria-label={says} />
         <Outlines wanted={wanted} found={found} seen={seen} />
         {!looks.value && (
           <div class="closed">
@@ -41,23 +42,18 @@ export function FinderView({wanted, found}: FinderViewProps) {
           </div>
         )}
       </div>
-      <figcaption class="dim">{wordsOf(seen)} {found && 'The line is where the last photograph has the chart. '}For framing only: the camera chooses its exposure.</figcaption>
+      <figcaption class="dim">{says} {found && 'The thin line is where it lay in the last photograph. '}For framing only: the camera chooses its exposure.</figcaption>
       <Complaint error={open.complaint ?? trouble.value} />
     </figure>
   );
 }
 
-function wordsOf(seen: Framing | null): string {
-  if (!seen) return 'Nothing is seen yet.';
-  const board = seen.corners > 0 ? `${seen.corners} corners of the board are seen.` : 'No board is seen.';
-  return seen.tags.length > 0 ? `${board} ${seen.tags.length} tags.` : board;
-}
-
 function Outlines({wanted, found, seen}: FinderViewProps & {seen: Framing | null}) {
+  const shape = seen?.board ?? seen?.sheet;
   return (
     <svg class="outlines" viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
       {seen?.tags.map((tag, index) => <polygon key={index} class="tag-seen" points={said(pointsIn(tag.corners))} />)}
-      {seen?.board && <polygon class="seen" points={said(pointsIn(seen.board.corners))} />}
+      {shape && <polygon class="seen" points={said(pointsIn(shape.corners))} />}
       {found && <polygon class="found" points={said(found)} />}
       {wanted && <polygon class="wanted" points={said(wanted)} />}
     </svg>
