@@ -93,11 +93,11 @@ Result<void> check_board(const Board& board) {
                    fmt::format("it must be {:g} to {:g}", kMarkerShare.least, kMarkerShare.most));
   const auto dictionary = find_dictionary(board.dictionary);
   if (!dictionary) return dictionary.error();
-  const int markers = board.squares_x * board.squares_y / 2;
-  if (markers > (*dictionary)->bytesList.rows) {
+  if (board.first_marker + board.markers() > (*dictionary)->bytesList.rows) {
     return Error{ErrorKind::kBadData, "the dictionary has too few markers", board.dictionary,
-                 fmt::format("it has {}, and a board of {} x {} squares needs {}",
-                             (*dictionary)->bytesList.rows, board.squares_x, board.squares_y, markers),
+                 fmt::format("it has {}, and a board of {} x {} squares needs {} from {} on",
+                             (*dictionary)->bytesList.rows, board.squares_x, board.squares_y, board.markers(),
+                             board.first_marker),
                  "name the dictionary that the board was printed with"};
   }
   return {};

@@ -19,15 +19,17 @@ enum class BoardKind { kCheckerboard, kCharuco };
 inline constexpr NumberRange kBoardSquares = {3, 100}, kBoardSquare_mm = {1e-3, 1e4},
                              kMarkerShare = {0.3, 0.9};
 
-/// A board as it is printed: the square at the upper left is black; a ChArUco board has markers from 0 in its
-/// white squares, row by row, as OpenCV 4.6 draws it.
+/// A board as it is printed: the square at the upper left is black; a ChArUco board has markers in its white
+/// squares, row by row, as OpenCV 4.6 draws it.
 struct Board {
   BoardKind kind = BoardKind::kCharuco;
   int squares_x = 0, squares_y = 0;  ///< kBoardSquares; of a checkerboard 4 at least, and not both alike
   double square_mm = 0;              ///< kBoardSquare_mm
   double marker_share = 0.75;        ///< side of a marker over that of a square; kMarkerShare
   std::string dictionary = "DICT_5X5_100";
+  int first_marker = 0;  ///< of the dictionary; those after it follow
 
+  int markers() const { return squares_x * squares_y / 2; }
   int corners() const { return (squares_x - 1) * (squares_y - 1); }
 };
 

@@ -19,18 +19,18 @@ namespace {
 constexpr double kAgrees = 0.15;  // of a square: a marker this far off its place is of another board
 
 struct SeenMarker {
-  int id;
+  int id;                             // from the board's first
   std::array<PixelPoint, 4> corners;  // upper left first, clockwise
 };
 
 std::vector<SeenMarker> detect(const ReducedPicture& picture,
-                               const cv::Ptr<cv::aruco::Dictionary>& dictionary) {
+                               const cv::Ptr<cv::aruco::Dictionary>& dictionary, int first_marker) {
   std::vector<std::vector<cv::Point2f>> corners;
   std::vector<int> ids;
   cv::aruco::detectMarkers(picture.picture, dictionary, corners, ids);
   std::vector<SeenMarker> markers;
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    SeenMarker marker = {ids[i], {}};
+    SeenMarker marker = {ids[i] - first_marker, {}};
     for (std::size_t k = 0; k < 4; ++k) marker.corners[k] = picture.whole(corners[i][k]);
     markers.push_back(marker);
   }
@@ -126,11 +126,11 @@ BoardSighting find_charuco(View<const std::uint8_t> grey, const Board& board, co
   const auto dictionary = *find_dictionary(board.dictionary);
   const auto squares = marker_squares(board);
   const ReducedPicture picture = reduced(grey);
-  std::vector<SeenMarker> markers = detect(picture, dictionary), others;
+  std::vector<SeenMarker> markers = detect(picture, dictionary, board.first_marker), others;
   if (markers.size() < 4) {
     ReducedPicture turned = picture;
     cv::flip(picture.picture, turned.picture, 1);
-    const std::size_t seen_from_behind = detect(turned, dictionary).size();
+    const std::size_t seen_from_behind = detect(turned, dictionary, board.first_marker).size();
     if (seen_from_behind >= 4) {
       return faulty(BoardFault::kMirrored,
                     fmt::format("{} of its markers can be read as in a mirror, {} as printed",
@@ -139,7 +139,9 @@ BoardSighting find_charuco(View<const std::uint8_t> grey, const Board& board, co
     return faulty(BoardFault::kNotFound,
                   fmt::format("{} of its {} markers can be read", markers.size(), squares.size()));
   }
-  const auto is_known = [&](const SeenMarker& m) { return m.id < static_cast<int>(squares.size()); };
+  const auto is_known = [&](const SeenMarker& m) {
+    return m.id >= 0 && m.id < static_cast<int>(squares.size());
+  };
   const auto end = std::stable_partition(markers.begin(), markers.end(), is_known);
   others.assign(end, markers.end());
   markers.erase(end, markers.end());

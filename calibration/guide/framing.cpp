@@ -160,6 +160,10 @@ Result<SeenFrame> seen_frame(const std::string& jpeg, const std::optional<KnownF
   }
   if (aim.board) see_board(grey, *aim.board, seen);
   if (aim.sheet) see_sheet(std::move(tags), size, *aim.sheet, seen);
+  if ((aim.board || aim.sheet) && !seen.board && !seen.sheet) {
+    if (const OwnedTarget* there = target_in(grey, aim.owned))
+      seen.says += fmt::format(" There is {}.", there->says);
+  }
   if (!seen.tags.empty())
     seen.says += fmt::format("{}{} tags.", seen.says.empty() ? "" : " ", seen.tags.size());
   return seen;

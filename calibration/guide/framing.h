@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/camera/markers.h"
+#include "calibration/guide/owned_target.h"
 #include "calibration/guide/sheet_lay.h"
 #include "calibration/run/board_photographs.h"
 #include "core/base/json_document.h"
@@ -48,6 +49,7 @@ Result<KnownFrame> known_frame(const std::filesystem::path& calibration);
 struct AimedThing {
   std::optional<PrintedBoard> board;
   std::optional<SheetAim> sheet;
+  std::vector<OwnedTarget> owned;  ///< by the rig: named where they lie there instead
 };
 
 /// What a picture shows.

@@ -21,12 +21,13 @@ using report::PdfPage;
 constexpr std::array<double, 2> kUsualField_mm = {200, 133};
 constexpr double kPrinterBorder_mm = 6, kFoot_mm = 14, kLetters_mm = 2.2;
 constexpr double kMarkerShare = 0.75;
-constexpr const char* kBoardDictionary = "DICT_5X5_100";
+constexpr const char* kBoardDictionary = "DICT_5X5_1000";
 constexpr const char* kTagDictionary = "DICT_APRILTAG_36h11";
 constexpr int kBoardColumns = 10, kBoardRows = 7;
 constexpr double kBoardOfField = 0.6;   // a board is laid in many places of the frame
 constexpr double kSheetOfField = 0.84;  // its tags stay in sight where it is tilted and turned
 constexpr int kFirstSheetTag = 20;      // the table's own are from 0 on
+constexpr int kSheetTags = 8, kSheetCodes = 69, kBoardCodes = 28;
 
 // Landscape.
 std::array<double, 2> size_of(PaperSize paper) {
@@ -36,6 +37,18 @@ std::array<double, 2> size_of(PaperSize paper) {
 
 double whole_half(double mm) {
   return std::floor(2 * mm) / 2;
+}
+
+int halves(double mm) {
+  return static_cast<int>(std::lround(2 * mm));
+}
+
+/// Where the markers of a target begin, by its size: a photograph tells which one lies there.
+int first_marker_of_board(double square_mm) {
+  return halves(square_mm) % kBoardCodes * (kBoardColumns * kBoardRows / 2);
+}
+int first_tag_of_sheet(double width_mm, double height_mm) {
+  return kFirstSheetTag + (7 * halves(width_mm) + halves(height_mm)) % kSheetCodes * kSheetTags;
 }
 
 // With its lower left corner at (x, y).
@@ -97,7 +110,8 @@ Result<PrintedTarget> board(std::array<double, 2> field_mm, PaperSize paper) {
   PdfPage page(page_width, page_height);
   const Result<std::array<double, 2>> at = placed(page, "board", width_mm, height_mm, paper);
   if (!at) return at.error();
-  int id = 0;
+  const int first_marker = first_marker_of_board(square_mm);
+  int id = first_marker;
   for (int row = 0; row < kBoardRows; ++row) {
     for (int column = 0; column < kBoardColumns; ++column) {
       const double x_mm = (*at)[0] + column * square_mm, y_mm = (*at)[1] + height_mm - (row + 1) * square_mm;
@@ -119,8 +133,8 @@ Result<PrintedTarget> board(std::array<double, 2> field_mm, PaperSize paper) {
       "glue it to glass or aluminium: what bends is no board; measure ten squares and mend square_mm";
   target.toml = fmt::format(
       "# {}.\nkind = \"charuco\"\nsquares_x = {}\nsquares_y = {}\nsquare_mm = {}\nmarker_share = {}\n"
-      "dictionary = \"{}\"\n",
-      target.says, kBoardColumns, kBoardRows, square_mm, kMarkerShare, kBoardDictionary);
+      "dictionary = \"{}\"\nfirst_marker = {}\n",
+      target.says, kBoardColumns, kBoardRows, square_mm, kMarkerShare, kBoardDictionary, first_marker);
   add_foot(page, "weft: " + target.says);
   target.pdf = page.bytes();
   return target;
@@ -135,8 +149,9 @@ Result<PrintedTarget> sheet(std::array<double, 2> field_mm, PaperSize paper) {
   const Result<std::array<double, 2>> at = placed(page, "sheet", width_mm, height_mm, paper);
   if (!at) return at.error();
   PrintedTarget target;
-  target.says = fmt::format("a white sheet of {} x {} mm with tags {} to {}", width_mm, height_mm,
-                            kFirstSheetTag, kFirstSheetTag + 7);
+  int id = first_tag_of_sheet(width_mm, height_mm);
+  target.says = fmt::format("a white sheet of {} x {} mm with tags {} to {}", width_mm, height_mm, id,
+                            id + kSheetTags - 1);
   target.remedy =
       "print it on matt paper without brightener, cut it along the corners, lay it flat; "
       "say its reflectance in sheet.toml where it was measured";
@@ -144,7 +159,6 @@ Result<PrintedTarget> sheet(std::array<double, 2> field_mm, PaperSize paper) {
       fmt::format("# {}.\nwidth_mm = {}\nheight_mm = {}\nmargin_mm = 2\n", target.says, width_mm, height_mm);
   const double u_mm = width_mm / 2 - tag_mm / 2 - quiet_mm - 2,
                v_mm = height_mm / 2 - tag_mm / 2 - quiet_mm - 2;
-  int id = kFirstSheetTag;
   for (const double v : {v_mm, 0.0, -v_mm}) {
     for (const double u : {-u_mm, 0.0, u_mm}) {
       if (u == 0 && v == 0) continue;

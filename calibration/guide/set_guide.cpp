@@ -13,6 +13,7 @@
 
 #include "calibration/camera/guidance.h"
 #include "calibration/camera/markers.h"
+#include "calibration/guide/owned_target.h"
 #include "calibration/guide/pose_words.h"
 #include "calibration/guide/response_series.h"
 #include "calibration/guide/scan_judgement.h"
@@ -142,6 +143,13 @@ SetStep step_to_table(const PhotographSet& set) {
           Json()};
 }
 
+/// Why a thing is not seen, and what of the rig's lies there instead.
+std::string with_what_lies_there(std::string why, View<const std::uint8_t> grey, const PhotographSet& set) {
+  const std::vector<OwnedTarget> targets = owned_targets(set.folder.parent_path().parent_path());
+  const OwnedTarget* there = target_in(grey, targets);
+  return there == nullptr ? why : fmt::format("{}: {} lies there", why, there->says);
+}
+
 SetPhotograph judged(const BoardPhotograph& board, Size size) {
   SetPhotograph photograph;
   photograph.name = board.name;
@@ -217,9 +225,16 @@ Result<std::vector<const BoardPhotograph*>> SetGuide::read_boards(const Photogra
   for (const std::string& name : names_in(set.folder, false)) {
     auto known = boards_.find(name);
     if (known == boards_.end()) {
-      const Result<BoardPhotograph> read =
+      Result<BoardPhotograph> read =
           read_board_photograph(set.folder / name, {.folder = set.folder, .board = printed.board});
-      if (!read) return read.error();
+      if (!read) return std::move(read).error();
+      const BoardFault fault = read->sighting.fault;
+      if (fault == BoardFault::kNotFound || fault == BoardFault::kWrongSquares) {
+        if (const Result<RawFrame> frame = capture::decode_raw(set.folder / name)) {
+          const Image<std::uint8_t> grey = grey_picture(*frame);
+          read->left_out = with_what_lies_there(std::move(read->left_out), grey.plane(), set);
+        }
+      }
       known = boards_.emplace(name, *read).first;
     }
     boards.push_back(&known->second);
@@ -297,36 +312,32 @@ std::span<const WantedLay> wanted_by(SetPart part) {
   return kMoved;
 }
 
-/// Where a sheet lies that the first lit frame of a session shows.
-Result<SheetPose> sheet_in(const fs::path& folder, const TaggedSheet& sheet, const CameraModel& camera) {
-  const Result<Session> session = read_session(folder);
-  if (!session) return session.error();
-  const auto lit = std::ranges::find_if(
-      session->shots, [](const Shot& shot) { return shot.role == ShotRole::kLit && !shot.superseded_by; });
-  if (lit == session->shots.end() || session->state != "complete") {
-    return Error{ErrorKind::kBadData, "the scan is not finished", folder.string(), "", "scan it once more"};
-  }
-  const Result<RawFrame> frame = capture::decode_raw(session->path_of(*lit));
-  if (!frame) return frame.error();
-  const Image<std::uint8_t> grey = grey_picture(*frame);
+Result<SheetPose> sheet_in(View<const std::uint8_t> grey, const TaggedSheet& sheet, const CameraModel& camera,
+                           const std::string& where) {
   std::set<std::string> dictionaries;
   for (const SheetTag& tag : sheet.tags) dictionaries.insert(tag.dictionary);
   std::vector<TagSighting> sightings;
   for (const std::string& dictionary : dictionaries) {
-    const auto found = find_tags(grey.plane(), dictionary);
+    const auto found = find_tags(grey, dictionary);
     if (!found) return found.error();
     sightings.insert(sightings.end(), found->begin(), found->end());
   }
-  return sheet_pose(camera, sightings, sheet.tags, folder.filename().string());
+  return sheet_pose(camera, sightings, sheet.tags, where);
 }
 
-SetPhotograph judged(const fs::path& folder, const TaggedSheet& sheet, const CameraModel& camera) {
+SetPhotograph judged(const fs::path& folder, const TaggedSheet& sheet, const CameraModel& camera,
+                     const PhotographSet& set) {
   SetPhotograph photograph;
   photograph.name = folder.filename().string();
-  const Result<SheetPose> pose = sheet_in(folder, sheet, camera);
+  photograph.is_used = false;
+  const Result<Image<std::uint8_t>> grey = grey_of_session(folder);
+  if (!grey) {
+    photograph.why = grey.error().message();
+    return photograph;
+  }
+  const Result<SheetPose> pose = sheet_in(grey->plane(), sheet, camera, photograph.name);
   if (!pose) {
-    photograph.is_used = false;
-    photograph.why = pose.error().message();
+    photograph.why = with_what_lies_there(pose.error().message(), grey->plane(), set);
     return photograph;
   }
   const Result<Session> session = read_session(folder);
@@ -352,6 +363,10 @@ SetPhotograph judged_chart(const Session& session, const PhotographSet& set) {
   const ChartLook look = look_at_chart_scan(session, set.folder, set.from);
   if (photograph.why.empty()) photograph.why = look.why_not;
   photograph.is_used = photograph.why.empty();
+  if (!photograph.is_used && look.outline.empty()) {
+    if (const Result<Image<std::uint8_t>> grey = grey_of_session(session.folder))
+      photograph.why = with_what_lies_there(std::move(photograph.why), grey->plane(), set);
+  }
   if (!look.note.empty()) photograph.facts["note"] = look.note;
   if (!look.outline.empty()) photograph.facts["outline"] = look.outline;
   return photograph;
@@ -453,7 +468,7 @@ Result<SetStanding> SetGuide::look_at_sheets(const PhotographSet& set) {
   SetStanding standing;
   for (const std::string& name : names_in(set.folder, true)) {
     if (!sessions_.contains(name)) {
-      SetPhotograph photograph = judged(set.folder / name, *sheet, *camera);
+      SetPhotograph photograph = judged(set.folder / name, *sheet, *camera, set);
       const Result<Session> session = read_session(set.folder / name);
       if (!session || session->state != "complete") {
         standing.photographs.push_back(std::move(photograph));

@@ -36,6 +36,8 @@ void describe_board(Fields& fields, BoardSettings& b, const char* kind) {
   fields.value({"marker_share", "ChArUco: side of a marker over that of a square", kMarkerShare},
                b.marker_share);
   fields.value({"dictionary", "ChArUco: as OpenCV names it, DICT_5X5_100"}, b.dictionary);
+  fields.value({"first_marker", "ChArUco: number of its first marker in the dictionary, 0", {0, 999}},
+               b.first_marker);
   fields.value({.name = "thickness_mm",
                 .says = "Of the board: the table is so far below its print",
                 .range = kBoardThickness_mm,
@@ -57,6 +59,7 @@ Result<BoardSettings> settings_of(const fs::path& file, const BoardSettings& opt
   over(options.square_mm, said->square_mm);
   over(options.marker_share, said->marker_share);
   over(options.dictionary, said->dictionary);
+  over(options.first_marker, said->first_marker);
   over(options.thickness_mm, said->thickness_mm);
   return BoardSettings(*said);
 }
@@ -85,6 +88,7 @@ Result<PrintedBoard> read_board_file(const fs::path& file, const BoardSettings& 
   board.square_mm = *said->square_mm;
   board.marker_share = said->marker_share.value_or(board.marker_share);
   board.dictionary = said->dictionary.value_or(board.dictionary);
+  board.first_marker = said->first_marker.value_or(board.first_marker);
   out.thickness_mm = said->thickness_mm.value_or(0);
   if (const Result<void> ok = check_board(board); !ok) return ok.error();
   return out;

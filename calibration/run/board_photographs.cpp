@@ -173,10 +173,12 @@ Result<void> look_at(const fs::path& file, const BoardFolderOptions& options, Bo
   if (!photograph.of_table) return {};
   auto tags = find_tags(grey, options.tag_dictionary);
   if (!tags) return tags.error();
+  const Board& board = options.board;
   const bool share_dictionary =
-      options.board.kind == BoardKind::kCharuco && options.board.dictionary == options.tag_dictionary;
-  const int first_id = share_dictionary ? options.board.squares_x * options.board.squares_y / 2 : 0;
-  std::erase_if(*tags, [&](const TagSighting& tag) { return tag.id < first_id; });
+      board.kind == BoardKind::kCharuco && board.dictionary == options.tag_dictionary;
+  std::erase_if(*tags, [&](const TagSighting& tag) {
+    return share_dictionary && tag.id >= board.first_marker && tag.id < board.first_marker + board.markers();
+  });
   photograph.tags = std::move(*tags);
   return {};
 }

@@ -270,6 +270,21 @@ TEST_F(CaptureAtTheRig, HoldsTheSheetsOfAProofAgainstWhatWasAsked) {
   EXPECT_TRUE(set["done"]) << set;
 }
 
+TEST_F(CaptureAtTheRig, WorksWithThatOfItsTargetsThatLiesThere) {
+  const std::string of_scene = read_text(targets() / "sheet.toml").value();
+  ASSERT_TRUE(served_.client().post("/api/v1/calibrations/targets", {{"target", "sheet"}}));
+  ASSERT_EQ(read_text(targets() / "sheet.before-1.toml").value(), of_scene);
+  const fs::path described = fs::path(begin("moved", nullptr)["folder"].get<std::string>()) / "sheet.toml";
+  ASSERT_NE(read_text(described).value(), of_scene) << "the newest, as nobody laid anything yet";
+  lay("board");
+  EXPECT_THAT(of(photograph(), "moved.weft")["why"].get<std::string>(),
+              HasSubstr(": a board of 10 x 6 squares"));
+  lay("sheet");
+  const Json set = photograph();
+  EXPECT_TRUE(of(set, "moved_2")["used"]) << set;
+  EXPECT_EQ(read_text(described).value(), of_scene);
+}
+
 TEST_F(CaptureAtTheRig, AsksAgainForASheetThatLiesOtherwiseAndKeepsIt) {
   begin("moved", "sheet.toml");
   lay("sheet");

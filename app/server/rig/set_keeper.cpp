@@ -105,7 +105,8 @@ Result<capture::ScanOutcome> SetKeeper::take(const calibration::SetStep& step, c
     const std::lock_guard lock(mutex_);
     work = &*work_;
   }
-  const Result<void> taken = calibration::take_step(work->set, step, rig_, lamps, camera, events, control);
+  Result<void> taken = calibration::take_step(work->set, step, rig_, lamps, camera, events, control);
+  if (taken) taken = adopt(*work, step);
   Result<calibration::SetStanding> standing = work->guide.look(work->set);
   if (standing && taken && step.kind == calibration::StepKind::kScan)
     standing = without_useless(*work, step, *standing);
@@ -118,6 +119,16 @@ Result<capture::ScanOutcome> SetKeeper::take(const calibration::SetStep& step, c
   }
   if (work->error) return *work->error;
   return capture::ScanOutcome();
+}
+
+/// The first photograph of a set tells which of the rig's targets lies there.
+Result<void> SetKeeper::adopt(Work& work, const calibration::SetStep& step) {
+  const auto is_used = [](const calibration::SetPhotograph& photograph) { return photograph.is_used; };
+  if (std::ranges::any_of(work.standing.photographs, is_used)) return {};
+  const Result<bool> adopted = calibration::adopt_target(work.set, step.name);
+  if (!adopted) return adopted.error();
+  if (*adopted) work.guide = calibration::SetGuide(work.set);
+  return {};
 }
 
 void SetKeeper::on_end() {
@@ -160,11 +171,12 @@ calibration::AimedThing SetKeeper::aim() const {
   {
     const std::lock_guard lock(mutex_);
     if (!work_) return {};
-    if (work_->set.part != calibration::SetPart::kBoard) return {{}, work_->standing.aim};
+    if (work_->set.part != calibration::SetPart::kBoard)
+      return {{}, work_->standing.aim, calibration::owned_targets(rig_.folder())};
     file = work_->set.board_file();
   }
   const Result<calibration::PrintedBoard> board = calibration::read_board_file(file, {});
-  return {board ? std::optional(*board) : std::nullopt, {}};
+  return {board ? std::optional(*board) : std::nullopt, {}, calibration::owned_targets(rig_.folder())};
 }
 
 void SetKeeper::close() {

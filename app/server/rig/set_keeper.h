@@ -57,6 +57,7 @@ class SetKeeper {
                                     const capture::ScanControl& control);
   static Result<calibration::SetStanding> without_useless(Work& work, const calibration::SetStep& step,
                                                           const calibration::SetStanding& standing);
+  static Result<void> adopt(Work& work, const calibration::SetStep& step);
   Result<void> tell_tape(const calibration::PhotographSet& set) const;
   void on_end();
   Json document_locked() const;

@@ -11,9 +11,11 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
+#include "calibration/guide/owned_target.h"
 #include "calibration/guide/photograph_set.h"
 #include "calibration/run/board_photographs.h"
 #include "calibration/run/sheet_files.h"
@@ -115,6 +117,37 @@ TEST_F(PrintedTargets, OfTheTableIsFourTags) {
   const auto seen = find_tags(picture_.plane(), "DICT_APRILTAG_36h11");
   ASSERT_TRUE(seen) << seen.error().message();
   EXPECT_EQ(seen->size(), 4U);
+}
+
+// What was printed once and what was printed for another rig lie in one drawer.
+TEST_F(PrintedTargets, IsToldFromOthersByItsMarkers) {
+  capture::Rig rig;
+  rig.file = folder_.path() / "rig.toml";
+  const auto print_of = [&](TargetPart part, double width_mm, double height_mm) {
+    TargetRequest request = with_field(width_mm, height_mm);
+    request.part = part;
+    const Result<PrintedTarget> target = print_for_rig(request, rig);
+    EXPECT_TRUE(target) << target.error().message();
+    return printed(target->pdf, 297, 210);
+  };
+  struct Case {
+    Image<std::uint8_t> picture;
+    std::string says;
+  };
+  std::vector<Case> cases;
+  cases.push_back({print_of(TargetPart::kBoard, 150, 105), "a board of 10 x 7 squares of 9 mm"});
+  cases.push_back({print_of(TargetPart::kBoard, 250, 175), "a board of 10 x 7 squares of 15 mm"});
+  cases.push_back({print_of(TargetPart::kSheet, 200, 133), "a white sheet of 168 x 111.5 mm"});
+  cases.push_back({print_of(TargetPart::kSheet, 240, 160), "a white sheet of 201.5 x 134 mm"});
+  const std::vector<OwnedTarget> owned = owned_targets(folder_.path());
+  ASSERT_EQ(owned.size(), 4U);
+  for (const Case& each : cases) {
+    const OwnedTarget* there = target_in(each.picture.plane(), owned);
+    ASSERT_NE(there, nullptr) << each.says;
+    EXPECT_EQ(there->says, each.says);
+  }
+  const Image<std::uint8_t> tags = print_of(TargetPart::kTags, 200, 133);
+  EXPECT_EQ(target_in(tags.plane(), owned), nullptr) << "they lie on every table";
 }
 
 TEST_F(PrintedTargets, FitsItsPaperOrSaysWhichWould) {

@@ -260,7 +260,7 @@ test('a rig that was knocked is brought back: seen, fitted, proven, accepted', a
     await page.getByRole('button', {name: 'Look through the camera'}).click();
     await page.getByText('Not yet: the sheet lies turned as before: turn it by 90 degrees.').waitFor();
     await picture(page, 'calibrate_turn_it');
-    assert.match(await take(page), /not used: the sheet lies turned as before: turn it by 90 degrees/);
+    assert.match(await take(page), /left out: the sheet lies turned as before: turn it by 90 degrees/);
     assert.equal(await page.getByText('No board is seen').count(), 0);
     await lay(rig, page, 'sheet turn=90');
     await lay(rig, page, 'sheet other=1');
