@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace weft::report {
@@ -17,6 +19,27 @@ constexpr double kCapitals = 0.718;    // height of Helvetica's capitals over it
 void PdfPage::fill(double x_mm, double y_mm, double width_mm, double height_mm) {
   drawing_ += fmt::format("{:.4f} {:.4f} {:.4f} {:.4f} re f\n", kPoints * x_mm, kPoints * y_mm,
                           kPoints * width_mm, kPoints * height_mm);
+}
+
+void PdfPage::fill(double x_mm, double y_mm, double width_mm, double height_mm,
+                   const std::array<double, 3>& rgb) {
+  drawing_ += fmt::format("q {:.4f} {:.4f} {:.4f} rg {:.4f} {:.4f} {:.4f} {:.4f} re f Q\n", rgb[0], rgb[1],
+                          rgb[2], kPoints * x_mm, kPoints * y_mm, kPoints * width_mm, kPoints * height_mm);
+}
+
+void PdfPage::ring(double x_mm, double y_mm, double radius_mm, double line_mm) {
+  constexpr double kQuarter = 0.5522847498;  // Bezier arms of a quarter of a circle, over its radius
+  const auto at = [&](double x, double y) {
+    return fmt::format("{:.4f} {:.4f}", kPoints * (x_mm + radius_mm * x), kPoints * (y_mm + radius_mm * y));
+  };
+  drawing_ += fmt::format("{:.4f} w {} m\n", kPoints * line_mm, at(1, 0));
+  double c = 1, s = 0;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    drawing_ += fmt::format("{} {} {} c\n", at(c - kQuarter * s, s + kQuarter * c),
+                            at(kQuarter * c - s, kQuarter * s + c), at(-s, c));
+    std::tie(c, s) = std::pair(-s, c);
+  }
+  drawing_ += "S\n";
 }
 
 void PdfPage::write(double x_mm, double y_mm, double letters_mm, std::string_view words) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 
 namespace weft::report {
 
-/// One page to print at its true size: black rectangles and lines of words. Lengths in mm, from the lower
+/// One page to print at its true size: rectangles, rings and lines of words. Lengths in mm, from the lower
 /// left corner. The same calls make the same bytes.
 class PdfPage {
  public:
@@ -15,7 +16,11 @@ class PdfPage {
   double width_mm() const { return width_mm_; }
   double height_mm() const { return height_mm_; }
 
-  void fill(double x_mm, double y_mm, double width_mm, double height_mm);
+  void fill(double x_mm, double y_mm, double width_mm, double height_mm);  ///< black
+  /// In red, green and blue as a display shows them, 0 to 1.
+  void fill(double x_mm, double y_mm, double width_mm, double height_mm,
+            const std::array<double, 3>& display_rgb);
+  void ring(double x_mm, double y_mm, double radius_mm, double line_mm);  ///< about (x, y)
   /// In Helvetica, its letters so high; of ASCII, what is none is left out.
   void write(double x_mm, double y_mm, double letters_mm, std::string_view words);
 

@@ -58,7 +58,8 @@ Run add_target(Options& options) {
 }  // namespace
 
 Verb target_verb() {
-  return {"target", "Print what a rig is calibrated with: a board, a white sheet, tags for its table",
+  return {"target",
+          "Print what a rig is calibrated with: a board, a white sheet, tags, a chart, a ball's stand",
           add_target};
 }
 

@@ -230,6 +230,11 @@ void compare_views(std::span<const BoardView> views, const Bundle& bundle, Board
   }
 }
 
+double tilt_to_table_deg(const CameraModel& camera, const Pose& camera_from_board) {
+  const Vec3 up = {0, 0, 1};
+  return angle_deg(camera.camera_from_rig_rotation * up, camera_from_board.rotation * up);
+}
+
 /// Mean residuals of all corners in each part of the frame.
 std::vector<PixelPoint> mean_residuals(std::span<const BoardView> views, const Bundle& bundle,
                                        const std::vector<int>& corners, const GuidanceOptions& options) {
@@ -328,6 +333,9 @@ BoardGuidance guide_board(const Board& board, double thickness_mm, const CameraM
   BoardGuidance guidance;
   guidance.camera = standing_over_the_table(bundle, start, table, thickness_mm);
   compare_views(views, bundle, guidance);
+  for (const Pose& pose : bundle.camera_from_board)
+    guidance.tilt_deg.push_back(tilt_to_table_deg(guidance.camera, pose));
+  if (table) guidance.table_tilt_deg = tilt_to_table_deg(start, bundle.camera_from_board[*table]);
   guidance.corners = corner_counts(views, guidance.camera.size, options.columns, options.rows);
   guidance.parts_seen = parts_with(guidance.corners);
   guidance.mean_residual_px = mean_residuals(views, bundle, guidance.corners, options);

@@ -59,6 +59,8 @@ struct BoardGuidance {
   std::optional<BoardPose> next;
   LensForecast then;                 ///< with that one
   std::vector<double> residuals_px;  ///< rms of each view by this camera
+  std::vector<double> tilt_deg;      ///< of the board in each view to the table
+  double table_tilt_deg = 0;         ///< of the view `table` to the table that `start` knew
   /// By part of the frame: where its corners were seen less where this camera has them, mean of all views; 0
   /// where there is none. Empty of fewer views than fit a camera.
   std::vector<PixelPoint> mean_residual_px;

@@ -8,7 +8,10 @@
 #include <utility>
 
 #include "calibration/camera/marker_squares.h"
+#include "calibration/color/chart_reference.h"
+#include "calibration/run/chart_pictures.h"
 #include "core/base/files.h"
+#include "core/image/color_spaces.h"
 #include "core/rig/calibration.h"
 #include "core/rig/camera.h"
 #include "report/pdf_page.h"
@@ -28,6 +31,7 @@ constexpr double kBoardOfField = 0.6;   // a board is laid in many places of the
 constexpr double kSheetOfField = 0.84;  // its tags stay in sight where it is tilted and turned
 constexpr int kFirstSheetTag = 20;      // the table's own are from 0 on
 constexpr int kSheetTags = 8, kSheetCodes = 69, kBoardCodes = 28;
+constexpr int kFirstBallTag = 576;
 
 // Landscape.
 std::array<double, 2> size_of(PaperSize paper) {
@@ -102,13 +106,13 @@ Result<std::array<double, 2>> placed(const PdfPage& page, const char* what, doub
   return std::array{x_mm, y_mm};
 }
 
-Result<PrintedTarget> board(std::array<double, 2> field_mm, PaperSize paper) {
+Result<PrintedTarget> board(const TargetRequest& request, std::array<double, 2> field_mm) {
   const double square_mm = std::max(
       whole_half(kBoardOfField * std::min(field_mm[0] / kBoardColumns, field_mm[1] / kBoardRows)), 1.0);
   const double width_mm = kBoardColumns * square_mm, height_mm = kBoardRows * square_mm;
-  const auto [page_width, page_height] = size_of(paper);
+  const auto [page_width, page_height] = size_of(request.paper);
   PdfPage page(page_width, page_height);
-  const Result<std::array<double, 2>> at = placed(page, "board", width_mm, height_mm, paper);
+  const Result<std::array<double, 2>> at = placed(page, "board", width_mm, height_mm, request.paper);
   if (!at) return at.error();
   const int first_marker = first_marker_of_board(square_mm);
   int id = first_marker;
@@ -140,13 +144,13 @@ Result<PrintedTarget> board(std::array<double, 2> field_mm, PaperSize paper) {
   return target;
 }
 
-Result<PrintedTarget> sheet(std::array<double, 2> field_mm, PaperSize paper) {
+Result<PrintedTarget> sheet(const TargetRequest& request, std::array<double, 2> field_mm) {
   const double width_mm = whole_half(kSheetOfField * field_mm[0]),
                height_mm = whole_half(kSheetOfField * field_mm[1]);
   const double tag_mm = std::max(whole_half(0.06 * field_mm[1]), 4.0), quiet_mm = tag_mm / 4;
-  const auto [page_width, page_height] = size_of(paper);
+  const auto [page_width, page_height] = size_of(request.paper);
   PdfPage page(page_width, page_height);
-  const Result<std::array<double, 2>> at = placed(page, "sheet", width_mm, height_mm, paper);
+  const Result<std::array<double, 2>> at = placed(page, "sheet", width_mm, height_mm, request.paper);
   if (!at) return at.error();
   PrintedTarget target;
   int id = first_tag_of_sheet(width_mm, height_mm);
@@ -181,14 +185,101 @@ Result<PrintedTarget> sheet(std::array<double, 2> field_mm, PaperSize paper) {
   return target;
 }
 
-Result<PrintedTarget> tags(std::array<double, 2> field_mm, PaperSize paper) {
+/// Four tags, `u_mm` and `v_mm` from a middle; `toml`, which may be null, says where.
+Result<void> add_corner_tags(PdfPage& page, std::array<double, 2> middle_mm, int id, double u_mm, double v_mm,
+                             double tag_mm, std::string* toml) {
+  for (const double v : {v_mm, -v_mm}) {
+    for (const double u : {-u_mm, u_mm}) {
+      if (Result<void> ok = add_marker(page, kTagDictionary, id, middle_mm[0] + u - tag_mm / 2,
+                                       middle_mm[1] + v - tag_mm / 2, tag_mm);
+          !ok)
+        return ok;
+      if (toml != nullptr)
+        *toml += fmt::format("\n[[tag]]\nid = {}\nside_mm = {}\ncentre_mm = [{}, {}]\n", id, tag_mm, u, v);
+      ++id;
+    }
+  }
+  return {};
+}
+
+Result<PrintedTarget> chart(const TargetRequest& request, std::array<double, 2> field_mm) {
+  const double patch_mm = std::max(whole_half(0.12 * field_mm[1]), 5.0), gap_mm = patch_mm / 8,
+               tag_mm = std::max(whole_half(0.06 * field_mm[1]), 4.0), beside_mm = 1.5 * tag_mm;
+  const double width_mm = kChartColumns * (patch_mm + gap_mm) + gap_mm,
+               height_mm = kChartRows * (patch_mm + gap_mm) + gap_mm;
+  const auto [page_width, page_height] = size_of(request.paper);
+  PdfPage page(page_width, page_height);
+  const Result<std::array<double, 2>> at =
+      placed(page, "chart", width_mm + 2 * beside_mm, height_mm, request.paper);
+  if (!at) return at.error();
+  const double left_mm = (*at)[0] + beside_mm, bottom_mm = (*at)[1];
+  page.fill(left_mm, bottom_mm, width_mm, height_mm);
+  const ChartReference colors = published_chart();
+  for (int patch = 0; patch < kChartPatches; ++patch) {
+    const int column = patch % kChartColumns, row = patch / kChartColumns;
+    page.fill(left_mm + gap_mm + column * (patch_mm + gap_mm),
+              bottom_mm + height_mm - (row + 1) * (patch_mm + gap_mm), patch_mm, patch_mm,
+              srgb_of_rec709(colors[static_cast<std::size_t>(patch)]));
+  }
+  const Result<void> tagged =
+      add_corner_tags(page, {left_mm + width_mm / 2, bottom_mm + height_mm / 2}, kPrintedChartTag,
+                      width_mm / 2 + beside_mm / 2, height_mm / 2 - tag_mm / 2, tag_mm, nullptr);
+  if (!tagged) return tagged.error();
+  PrintedTarget target;
+  target.says = fmt::format("a chart of 24 patches, whose colours are the printer's, with tags {} to {}",
+                            kPrintedChartTag, kPrintedChartTag + kPrintedChartTags - 1);
+  target.remedy =
+      "print it on matt paper; it serves series of exposures (weft capture response) as it is, and colour "
+      "only "
+      "by a chart.toml with lab_d50 of its patches as you measured them";
+  add_foot(page, "weft: " + target.says);
+  page.write(kPrinterBorder_mm + 4, kPrinterBorder_mm + 6, kLetters_mm,
+             "for series of exposures; it tells no colour before somebody measured its patches");
+  target.pdf = page.bytes();
+  return target;
+}
+
+Result<PrintedTarget> ball(const TargetRequest& request, std::array<double, 2> field_mm) {
+  constexpr double kLine_mm = 0.3, kWasher = 0.5, kApart = 1.1;
+  const double radius_mm = request.ball_mm / 2, tag_mm = std::max(whole_half(0.07 * field_mm[1]), 4.0);
+  const double out_mm = kApart * radius_mm + tag_mm, side_mm = 2 * out_mm + 1.5 * tag_mm;
+  const auto [page_width, page_height] = size_of(request.paper);
+  PdfPage page(page_width, page_height);
+  const Result<std::array<double, 2>> at = placed(page, "ball", side_mm, side_mm, request.paper);
+  if (!at) return at.error();
+  const std::array middle_mm = {(*at)[0] + side_mm / 2, (*at)[1] + side_mm / 2};
+  page.ring(middle_mm[0], middle_mm[1], radius_mm, kLine_mm);
+  page.ring(middle_mm[0], middle_mm[1], kWasher * radius_mm, kLine_mm);
+  PrintedTarget target;
+  // Thinner than this, a washer does not lift the ball from the page.
+  const double thin_mm = radius_mm * (1 - std::sqrt(1 - kWasher * kWasher));
+  target.says = fmt::format("a stand for a mirror ball of {} mm with tags {} to {}", request.ball_mm,
+                            kFirstBallTag, kFirstBallTag + 3);
+  target.remedy = fmt::format(
+      "glue a washer with a hole of {} mm, at most {:.1f} mm thick, on the inner ring and lay the ball into "
+      "it; "
+      "its centre is {} mm above the middle of the tags, for whatever reads light directions from its "
+      "highlight",
+      kWasher * request.ball_mm, thin_mm, radius_mm);
+  target.toml = fmt::format("# {}.\ndiameter_mm = {}\ncentre_mm = [0, 0, {}]\n", target.says, request.ball_mm,
+                            radius_mm);
+  if (const Result<void> tagged =
+          add_corner_tags(page, middle_mm, kFirstBallTag, out_mm, out_mm, tag_mm, &target.toml);
+      !tagged)
+    return tagged.error();
+  add_foot(page, "weft: " + target.says);
+  target.pdf = page.bytes();
+  return target;
+}
+
+Result<PrintedTarget> tags(const TargetRequest& request, std::array<double, 2> field_mm) {
   constexpr double kGap_mm = 20, kLine_mm = 0.15;
   const double tag_mm = std::max(whole_half(0.07 * field_mm[1]), 4.0), quiet_mm = kCardQuiet * tag_mm,
                white_mm = kCardWhite * tag_mm, card_mm = tag_mm + 2 * quiet_mm, wide_mm = card_mm + white_mm;
-  const auto [page_width, page_height] = size_of(paper);
+  const auto [page_width, page_height] = size_of(request.paper);
   PdfPage page(page_width, page_height);
   const Result<std::array<double, 2>> at =
-      placed(page, "tags", 2 * wide_mm + kGap_mm, 2 * card_mm + kGap_mm, paper);
+      placed(page, "tags", 2 * wide_mm + kGap_mm, 2 * card_mm + kGap_mm, request.paper);
   if (!at) return at.error();
   PrintedTarget target;
   target.says =
@@ -218,11 +309,13 @@ Result<PrintedTarget> tags(std::array<double, 2> field_mm, PaperSize paper) {
 }  // namespace
 
 void describe(Fields& fields, TargetRequest& r) {
-  fields.choice({.name = "target",
-                 .says = "What to print: board of the lens, sheet of the lights, tags of the table",
-                 .need = kMustSay,
-                 .option = ""},
-                r.part, kTargetNames);
+  fields.choice(
+      {.name = "target",
+       .says = "What to print: board of the lens, sheet of the lights, tags of the table, chart for series "
+               "of exposures, stand for a mirror ball",
+       .need = kMustSay,
+       .option = ""},
+      r.part, kTargetNames);
   fields.choice({"paper", "To print on, landscape"}, r.paper, kPaperNames);
   fields.value({"field_width_mm",
                 "What the camera sees of the table, mm; default by the rig's calibration, else 200",
@@ -230,6 +323,7 @@ void describe(Fields& fields, TargetRequest& r) {
                r.field_width_mm);
   fields.value({"field_height_mm", "The same; default by the rig's calibration, else 133", {20, 2000}},
                r.field_height_mm);
+  fields.value({"ball_mm", "Diameter of the ball, mm", {5, 200}}, r.ball_mm);
 }
 
 std::optional<std::array<double, 2>> field_of(const std::filesystem::path& folder) {
@@ -249,9 +343,9 @@ Result<PrintedTarget> print_target(const TargetRequest& request,
   const std::array<double, 2> known = known_mm.value_or(kUsualField_mm);
   const std::array field_mm = {request.field_width_mm.value_or(known[0]),
                                request.field_height_mm.value_or(known[1])};
-  constexpr std::array kPrint = {&board, &sheet, &tags};
+  constexpr std::array kPrint = {&board, &sheet, &tags, &chart, &ball};
   const auto part = static_cast<std::size_t>(request.part);
-  Result<PrintedTarget> target = kPrint[part](field_mm, request.paper);
+  Result<PrintedTarget> target = kPrint[part](request, field_mm);
   if (target) target->name = kTargetNames[part];
   return target;
 }
@@ -282,9 +376,10 @@ Result<PrintedTarget> print_for_rig(const TargetRequest& request, const capture:
   const std::filesystem::path pdf = pdf_of_target(rig, target->name);
   const std::filesystem::path toml = pdf.parent_path() / (target->name + ".toml");
   Result<void> written = make_writable_folder(pdf.parent_path());
-  if (written) written = set_aside(toml, target->toml);
+  const bool is_described = !target->toml.empty();
+  if (written && is_described) written = set_aside(toml, target->toml);
   if (written) written = write_file(pdf, target->pdf);
-  if (written) written = write_file(toml, target->toml);
+  if (written && is_described) written = write_file(toml, target->toml);
   if (!written) return std::move(written).error();
   return target;
 }

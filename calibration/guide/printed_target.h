@@ -13,12 +13,13 @@
 #include "core/describe/fields.h"
 
 // What a rig is calibrated with, to print: the board of its lens, the white sheet of its lights, the tags
-// that stay on its table. They fit what the camera sees of it.
+// that stay on its table, a chart for series of exposures, a stand for a mirror ball. They fit what the
+// camera sees of it.
 
 namespace weft::calibration {
 
-enum class TargetPart { kBoard, kSheet, kTags };
-inline constexpr std::array kTargetNames = {"board", "sheet", "tags"};
+enum class TargetPart { kBoard, kSheet, kTags, kChart, kBall };
+inline constexpr std::array kTargetNames = {"board", "sheet", "tags", "chart", "ball"};
 
 enum class PaperSize { kA4, kA3, kLetter };
 inline constexpr std::array kPaperNames = {"a4", "a3", "letter"};
@@ -28,12 +29,13 @@ struct TargetRequest {
   PaperSize paper = PaperSize::kA4;
   /// What the camera sees of the table; absent: as the rig's calibration knows, else 200 x 133 mm.
   std::optional<double> field_width_mm = {}, field_height_mm = {};
+  double ball_mm = 40;  ///< diameter of the ball
 };
 void describe(Fields& fields, TargetRequest& request);
 
 struct PrintedTarget {
   std::string name;    ///< "board"
-  std::string toml;    ///< what is written of it: board.toml
+  std::string toml;    ///< what is written of it: board.toml; empty of a chart, of which nothing is known
   std::string pdf;     ///< one page at its true size, with a bar of 100 mm to hold the printer to
   std::string says;    ///< what it is, in a line
   std::string remedy;  ///< what to do with it, in a line

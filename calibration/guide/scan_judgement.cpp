@@ -99,6 +99,9 @@ ChartLook look_at_chart_scan(const Session& session, const std::filesystem::path
   if (!patches) return {patches.error().message(), "", outline};
   const Result<ChartColors> colors = read_chart_colors(set);
   if (!colors) return {colors.error().message(), "", outline};
+  if (const Result<void> known = check_measured(*picture, *colors, session.folder.filename().string());
+      !known)
+    return {known.error().message(), "", outline};
   const ChartSide side = side_of(*patches, colors->reference);
   if (side == ChartSide::kMirrored)
     return {"the chart is mirrored: its columns or rows run backwards", "", outline};

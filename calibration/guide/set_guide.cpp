@@ -189,6 +189,31 @@ void tell(const BoardGuidance& guidance, const GuidanceOptions& asked, const std
   standing.is_done = guidance.is_done;
 }
 
+/// How boards lie against what was asked: each tells of the lens all the same.
+void judge_boards(const PhotographSet& set, const BoardGuidance& guidance,
+                  const std::vector<std::size_t>& viewed, std::optional<std::size_t> table,
+                  SetStanding& standing) {
+  constexpr double kOff_deg = 12;
+  for (std::size_t i = 0; i < viewed.size(); ++i) {
+    SetPhotograph& photograph = standing.photographs[viewed[i]];
+    const double tilt_deg = guidance.tilt_deg[i];
+    photograph.facts["tilt_deg"] = tilt_deg;
+    if (photograph.facts.contains("note")) continue;
+    if (i == table && !set.from.empty() && guidance.table_tilt_deg > kOff_deg) {
+      photograph.facts["note"] = fmt::format(
+          "by the calibration before it is tilted by {:.0f} degrees: unless the camera was moved, leave it "
+          "out and lay the board flat",
+          guidance.table_tilt_deg);
+    }
+    const auto stem = fs::path(photograph.name).stem().string();
+    const Json asked = set.asked.contains(stem) ? set.asked[stem] : Json();
+    if (!asked.is_object() || !asked.value("tilt_deg", Json()).is_number()) continue;
+    const double asked_deg = asked["tilt_deg"];
+    if (std::abs(asked_deg - tilt_deg) > kOff_deg)
+      photograph.facts["note"] = fmt::format("it counts; {:.0f} degrees of tilt were asked", asked_deg);
+  }
+}
+
 /// A camera, and how well its focal length is known.
 struct KnownCamera {
   CameraModel camera;
@@ -267,6 +292,7 @@ Result<SetStanding> SetGuide::look_at_boards(const PhotographSet& set) {
     const BoardGuidance guidance =
         guide_board(printed->board, printed->thickness_mm, start->camera, views, table, asked);
     tell(guidance, asked, viewed, standing);
+    judge_boards(set, guidance, viewed, table, standing);
     if (guidance.next) standing.next = step_to(set, guidance);
   }
   if (!table) standing.next = step_to_table(set);

@@ -57,11 +57,13 @@ Error bad_chart(const ChartPicture& picture, std::string what, std::string why, 
 
 class ChartReader {
  public:
-  ChartReader(const CalibrateColorOptions& options, const ChartReference& reference, ColorMeasurement& out,
+  ChartReader(const CalibrateColorOptions& options, const ChartColors& colors, ColorMeasurement& out,
               std::vector<std::string>& warnings)
-      : options_(options), reference_(reference), out_(out), warnings_(warnings) {}
+      : options_(options), colors_(colors), out_(out), warnings_(warnings) {}
 
   Result<FlatChart> read(const ChartPicture& picture) {
+    if (Result<void> ok = check_measured(picture.rgb, colors_, picture.source.string()); !ok)
+      return std::move(ok).error();
     Result<std::vector<PatchReading>> patches = find_patches(picture);
     if (!patches) return std::move(patches).error();
     FlatChart chart;
@@ -112,7 +114,7 @@ class ChartReader {
     if (full > kChartPatches - static_cast<int>(kFewestPatches)) {
       return bad_chart(picture, "too many patches are full", fmt::format("{} of 24", full), kExposeWhite);
     }
-    const ChartSide side = side_of(*patches, reference_);
+    const ChartSide side = side_of(*patches, colors_.reference);
     if (side == ChartSide::kUpright) {
       const bool lies_turned = corners[1][0] < corners[0][0];
       if (lies_turned) {
@@ -178,7 +180,7 @@ class ChartReader {
       if (!chart.is_good[at]) continue;
       for (std::size_t c = 0; c < 3; ++c) {
         sum[c] += chart.camera[at][c] / chart.camera[at][1];
-        reference[c] += reference_[at][c] / reference_[at][1];
+        reference[c] += colors_.reference[at][c] / colors_.reference[at][1];
       }
     }
     if (sum[1] == 0) return {1, 1, 1};
@@ -206,7 +208,7 @@ class ChartReader {
 
   Result<void> take_light_out(const ChartPicture& picture, FlatChart& chart) {
     std::vector<int> numbers;
-    const std::vector<ChartSample> samples = samples_of(chart, reference_, numbers);
+    const std::vector<ChartSample> samples = samples_of(chart, colors_.reference, numbers);
     const Result<std::vector<double>> light = light_of_each(samples);
     if (!light) return light.error();
     std::vector<int> shaded;
@@ -255,7 +257,7 @@ class ChartReader {
 
  private:
   const CalibrateColorOptions& options_;
-  const ChartReference& reference_;
+  const ChartColors& colors_;
   ColorMeasurement& out_;
   std::vector<std::string>& warnings_;
 };
@@ -428,7 +430,7 @@ Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, c
   CalibrateOutcome outcome;
   ColorMeasurement color;
   color.reference = colors->name;
-  ChartReader reader(options, colors->reference, color, outcome.warnings);
+  ChartReader reader(options, *colors, color, outcome.warnings);
   const Result<ReadCharts> read = read_charts(options, before, reader, color, context);
   if (!read) return read.error();
   if (Result<void> ok = fit_matrix(read->mean(), colors->reference, color); !ok) return std::move(ok).error();

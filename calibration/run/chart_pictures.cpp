@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "calibration/camera/markers.h"
 #include "calibration/run/sheet_files.h"
 #include "capture/frames/raw_picture.h"
 #include "capture/raw/decode_raw.h"
@@ -92,6 +93,7 @@ void describe(Fields& fields, ChartFile& file) {
 Result<ChartColors> written_colors(const fs::path& file, const std::string& key, const Json& list) {
   ChartColors colors;
   colors.name = "by chart.toml";
+  colors.is_measured = true;
   const std::vector<std::vector<double>> rows = *rows_of(list, 3);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::array<double, 3> t = {rows[i][0], rows[i][1], rows[i][2]};
@@ -155,7 +157,7 @@ Result<ChartPicture> read_chart_picture(const fs::path& file, const Calibration*
 Result<ChartColors> read_chart_colors(const fs::path& input) {
   const fs::path file =
       (is_there(input / "session.json") ? absolute_folder(input).parent_path() : input) / "chart.toml";
-  const ChartColors published = {published_chart(), "as published for charts from November 2014"};
+  const ChartColors published = {published_chart(), "as published for charts from November 2014", false};
   if (!is_there(file)) return published;
   const Result<toml::table> table = read_toml(file);
   if (!table) return table.error();
@@ -166,7 +168,23 @@ Result<ChartColors> read_chart_colors(const fs::path& input) {
   if (!said->rec709.is_null()) return written_colors(file, "rec709", said->rec709);
   if (!said->srgb.is_null()) return written_colors(file, "srgb", said->srgb);
   if (said->chart.edition == "2014") return published;
-  return ChartColors{published_chart_before_2014(), "as published for charts before November 2014"};
+  return ChartColors{published_chart_before_2014(), "as published for charts before November 2014", false};
+}
+
+Result<void> check_measured(const Image<float>& rgb, const ChartColors& colors, const std::string& where) {
+  if (colors.is_measured) return {};
+  const std::array<View<const float>, 3> planes = {rgb.plane(0), rgb.plane(1), rgb.plane(2)};
+  const Image<std::uint8_t> grey = grey_picture(planes);
+  const auto tags = find_tags(grey.plane(), kPrintedChartDictionary);
+  if (!tags) return tags.error();
+  const auto seen = std::ranges::count_if(*tags, [](const TagSighting& tag) {
+    return tag.id >= kPrintedChartTag && tag.id < kPrintedChartTag + kPrintedChartTags;
+  });
+  if (seen < 2) return {};
+  return Error{ErrorKind::kBadData, "nobody knows the colours of this chart", where,
+               "it came from a printer (weft target chart)",
+               "measure its 24 patches and write them into chart.toml as lab_d50, or lay a chart whose maker "
+               "measured it"};
 }
 
 void describe(Fields& fields, ChartEdition& chart) {

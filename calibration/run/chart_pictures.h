@@ -43,9 +43,17 @@ Result<ChartPicture> read_chart_picture(const std::filesystem::path& file, const
 /// `rec709` (linear, white 1) or `srgb` (8 bits). kBadData names what is wrong.
 struct ChartColors {
   ChartReference reference;
-  std::string name;  ///< for people
+  std::string name;          ///< for people
+  bool is_measured = false;  ///< chart.toml has them
 };
 Result<ChartColors> read_chart_colors(const std::filesystem::path& input);
+
+/// Tags beside a chart that weft printed (weft target chart), whose colours are those of the printer.
+inline constexpr const char* kPrintedChartDictionary = "DICT_APRILTAG_36h11";
+inline constexpr int kPrintedChartTag = 572, kPrintedChartTags = 4;
+
+/// kBadData, with `where`, of a picture of such a chart where nobody measured its colours.
+Result<void> check_measured(const Image<float>& rgb, const ChartColors& colors, const std::string& where);
 
 /// What chart.toml says of a chart whose colours are published.
 struct ChartEdition {

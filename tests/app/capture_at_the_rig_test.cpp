@@ -107,6 +107,20 @@ TEST_F(CaptureAtTheRig, IsNotDoneHoweverManyBoardsLieFlat) {
   EXPECT_THAT(set["next"]["says"].get<std::string>(), HasSubstr("tilt"));
 }
 
+TEST_F(CaptureAtTheRig, TellsABoardThatIsTiltedOtherwiseThanAsked) {
+  begin("board", "board.toml");
+  lay("board tilt=20 azimuth=90");
+  Json set = photograph();
+  EXPECT_THAT(of(set, "table01")["facts"].value("note", ""), HasSubstr("tilted by 20 degrees")) << set;
+  ASSERT_GT(set["next"]["pose"]["tilt_deg"].get<double>(), 13) << set["next"];
+  const double asked_deg = set["next"]["pose"]["tilt_deg"];
+  lay("board tilt=20 azimuth=90 x=30");
+  set = photograph();
+  EXPECT_NEAR(of(set, "board01")["facts"]["tilt_deg"].get<double>(), 0, 3) << "to the table that it shows";
+  EXPECT_THAT(of(set, "board01")["facts"].value("note", ""),
+              HasSubstr(std::to_string(std::lround(asked_deg)) + " degrees of tilt were asked"));
+}
+
 TEST_F(CaptureAtTheRig, GoesOnAfterTheDaemonWasKilled) {
   begin("board", "board.toml");
   lay("board");

@@ -148,6 +148,18 @@ TEST(GuideBoard, IsDoneOnceTheWholeFrameWasSeen) {
   EXPECT_GE(guidance.parts_seen, 44) << "of 48";
 }
 
+TEST(GuideBoard, TellsHowEachBoardWasTilted) {
+  Operator person;
+  const BoardPose pose = *person.asks().next;
+  ASSERT_GE(pose.tilt_deg, 15);
+  person.photograph(pose.rig_from_board);
+  const BoardGuidance guidance = person.asks();
+  ASSERT_EQ(guidance.tilt_deg.size(), 2U);
+  EXPECT_NEAR(guidance.tilt_deg[0], 0, 1e-9) << "it is the table";
+  EXPECT_NEAR(guidance.tilt_deg[1], pose.tilt_deg, 2) << "by a focal length that is not known yet";
+  EXPECT_LT(guidance.table_tilt_deg, 2) << "the table of before";
+}
+
 TEST(GuideBoard, TellsThePhotographOfBefore) {
   Operator person;
   const BoardPose pose = *person.asks().next;

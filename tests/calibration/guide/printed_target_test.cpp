@@ -18,6 +18,7 @@
 #include "calibration/guide/owned_target.h"
 #include "calibration/guide/photograph_set.h"
 #include "calibration/run/board_photographs.h"
+#include "calibration/run/chart_pictures.h"
 #include "calibration/run/sheet_files.h"
 #include "core/base/files.h"
 #include "core/base/temporary_folder.h"
@@ -67,6 +68,7 @@ class PrintedTargets : public testing::Test {
     request.part = part;
     const Result<PrintedTarget> target = print_target(request, std::nullopt);
     ASSERT_TRUE(target) << target.error().message();
+    pdf_ = target->pdf;
     picture_ = printed(target->pdf, 297, 210);
     file_ = folder_.path() / (target->name + ".toml");
     ASSERT_TRUE(write_file(file_, target->toml));
@@ -74,6 +76,7 @@ class PrintedTargets : public testing::Test {
 
   TemporaryFolder folder_;
   fs::path file_;
+  std::string pdf_;
   Image<std::uint8_t> picture_{{1, 1}};
 };
 
@@ -117,6 +120,56 @@ TEST_F(PrintedTargets, OfTheTableIsFourTags) {
   const auto seen = find_tags(picture_.plane(), "DICT_APRILTAG_36h11");
   ASSERT_TRUE(seen) << seen.error().message();
   EXPECT_EQ(seen->size(), 4U);
+}
+
+TEST_F(PrintedTargets, OfAChartTellsNoColourBeforeItIsMeasured) {
+  print_one(TargetPart::kChart);
+  std::size_t patches = 0;
+  for (std::size_t at = pdf_.find(" re f Q"); at != std::string::npos; at = pdf_.find(" re f Q", at + 1))
+    ++patches;
+  EXPECT_EQ(patches, 24U);
+  EXPECT_THAT(pdf_, HasSubstr("it tells no colour before somebody measured its patches"));
+  // In as few pixels as a camera has for it.
+  constexpr int kEach = 4;
+  Image<float> rgb({picture_.width() / kEach, picture_.height() / kEach}, 3);
+  for (int c = 0; c < 3; ++c) {
+    for (int y = 0; y < rgb.height(); ++y) {
+      for (int x = 0; x < rgb.width(); ++x)
+        rgb(x, y, c) = static_cast<float>(picture_(kEach * x + kEach / 2, kEach * y + kEach / 2)) / 255;
+    }
+  }
+  const ChartColors published = {published_chart(), "as published", false},
+                    measured = {published_chart(), "as measured", true};
+  const Result<void> refused = check_measured(rgb, published, "chart.weft");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kBadData);
+  EXPECT_THAT(refused.error().message(), HasSubstr("lab_d50"));
+  EXPECT_TRUE(check_measured(rgb, measured, "chart.weft"));
+  EXPECT_TRUE(check_measured(Image<float>({400, 300}, 3), published, "chart.weft")) << "no tag beside it";
+}
+
+TEST_F(PrintedTargets, OfABallHasTagsAboutItsOutline) {
+  print_one(TargetPart::kBall);
+  const auto seen = find_tags(picture_.plane(), "DICT_APRILTAG_36h11");
+  ASSERT_TRUE(seen) << seen.error().message();
+  ASSERT_EQ(seen->size(), 4U);
+  double x_mm = 0, y_mm = 0;
+  for (const TagSighting& tag : *seen) {
+    for (const PixelPoint& corner : tag.corners_px)
+      x_mm += corner.x / 16 / kPixels, y_mm += corner.y / 16 / kPixels;
+  }
+  // The first ring begins at its right.
+  std::istringstream lines(pdf_);
+  double right_mm = 0, middle_mm = 0, points = 0;
+  std::string word;
+  for (std::string line; right_mm == 0 && std::getline(lines, line);) {
+    std::istringstream numbers(line);
+    if (line.ends_with(" m") && numbers >> points >> word >> right_mm >> middle_mm)
+      right_mm *= 25.4 / 72, middle_mm *= 25.4 / 72;
+  }
+  EXPECT_NEAR(right_mm - x_mm, 20, 0.1) << "the radius of a ball of 40 mm";
+  EXPECT_NEAR(middle_mm, 210 - y_mm, 0.1);
+  EXPECT_THAT(read_text(file_).value(), HasSubstr("diameter_mm = 40\ncentre_mm = [0, 0, 20]"));
 }
 
 // What was printed once and what was printed for another rig lie in one drawer.

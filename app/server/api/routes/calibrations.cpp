@@ -133,7 +133,7 @@ Result<Reply> printed_target(const RigParts& parts, const Call& call) {
   const bool is_known = std::ranges::find(calibration::kTargetNames, name) != calibration::kTargetNames.end();
   Result<std::string> pdf = is_known ? read_text(calibration::pdf_of_target(parts.rig, name))
                                      : Error{ErrorKind::kNoInput, "there is no such target", name, "",
-                                             "print a board, a sheet or tags"};
+                                             "print one: POST calibrations/targets"};
   if (!pdf) return std::move(pdf).error();
   return Reply{200, "application/pdf", std::move(*pdf)};
 }

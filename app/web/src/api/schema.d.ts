@@ -594,7 +594,7 @@ export interface paths {
                 query?: never;
                 header?: never;
                 path: {
-                    target: "board" | "sheet" | "tags";
+                    target: "board" | "sheet" | "tags" | "chart" | "ball";
                 };
                 cookie?: never;
             };
@@ -7192,10 +7192,10 @@ export interface components {
         };
         TargetRequest: {
             /**
-             * @description What to print: board of the lens, sheet of the lights, tags of the table
+             * @description What to print: board of the lens, sheet of the lights, tags of the table, chart for series of exposures, stand for a mirror ball
              * @enum {string}
              */
-            target: "board" | "sheet" | "tags";
+            target: "board" | "sheet" | "tags" | "chart" | "ball";
             /**
              * @description To print on, landscape
              * @default a4
@@ -7206,6 +7206,11 @@ export interface components {
             field_width_mm?: number;
             /** @description The same; default by the rig's calibration, else 133 */
             field_height_mm?: number;
+            /**
+             * @description Diameter of the ball, mm
+             * @default 40
+             */
+            ball_mm?: number;
         };
         /** Solve */
         SolveJob: {
@@ -7823,6 +7828,8 @@ export interface components {
             marker_share?: number;
             /** @description ChArUco: as OpenCV names it, DICT_5X5_100 */
             dictionary?: string;
+            /** @description ChArUco: number of its first marker in the dictionary, 0 */
+            first_marker?: number;
             /** @description Of the board: the table is so far below its print */
             thickness_mm?: number;
             /**
