@@ -82,7 +82,8 @@ Result<void> SetCapture::took(Result<Json> document) {
 }
 
 Result<void> SetCapture::begin(const SetArguments& a) {
-  Json body = {{"part", a.part}, {"name", a.name}};
+  Json body = {{"part", a.part}};
+  if (!a.name.empty()) body["name"] = a.name;
   if (!a.from.empty()) body["from"] = absolute_folder(a.from).string();
   if (!a.description.empty()) {
     const Result<std::string> text = read_text(a.description);

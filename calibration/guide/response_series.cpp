@@ -53,8 +53,7 @@ constexpr SeriesFolder kTrapFolders[] = {{"trap", kTrap, kAlike}};
 std::string says_of(const std::string& step) {
   if (step == kLit) {
     return "lay something still and matt on the table that is partly light and partly dark, as white paper "
-           "on "
-           "grey card; about a minute, do not touch the table";
+           "on grey card, or a printed chart (weft target chart); about a minute, do not touch the table";
   }
   if (step == kDark) return "put the cover on the lens";
   return "lay white paper that fills the picture, with the black trap in its middle";

@@ -145,9 +145,12 @@ SetStep step_to_table(const PhotographSet& set) {
 
 /// Why a thing is not seen, and what of the rig's lies there instead.
 std::string with_what_lies_there(std::string why, View<const std::uint8_t> grey, const PhotographSet& set) {
-  const std::vector<OwnedTarget> targets = owned_targets(set.folder.parent_path().parent_path());
+  std::vector<OwnedTarget> targets = owned_targets(set.folder.parent_path().parent_path());
+  const Result<std::string> described =
+      read_text(set.part == SetPart::kBoard ? set.board_file() : set.sheet_file());
+  std::erase_if(targets, [&](const OwnedTarget& each) { return described && each.text == *described; });
   const OwnedTarget* there = target_in(grey, targets);
-  return there == nullptr ? why : fmt::format("{}: {} lies there", why, there->says);
+  return there == nullptr ? why : fmt::format("{} lies there; {}", there->says, why);
 }
 
 SetPhotograph judged(const BoardPhotograph& board, Size size) {

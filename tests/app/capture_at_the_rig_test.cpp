@@ -292,7 +292,7 @@ TEST_F(CaptureAtTheRig, WorksWithThatOfItsTargetsThatLiesThere) {
   ASSERT_NE(read_text(described).value(), of_scene) << "the newest, as nobody laid anything yet";
   lay("board");
   EXPECT_THAT(of(photograph(), "moved.weft")["why"].get<std::string>(),
-              HasSubstr(": a board of 10 x 6 squares"));
+              testing::StartsWith("a board of 10 x 6 squares of 10.98 mm lies there; too few tags"));
   lay("sheet");
   const Json set = photograph();
   EXPECT_TRUE(of(set, "moved_2")["used"]) << set;
