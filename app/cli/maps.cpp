@@ -72,7 +72,7 @@ Result<int> explain(material::MapsRequest& arguments, const CommonArguments& com
 // Whoever names a solve, or is content with a draft, gets what there is.
 Result<void> make_solve_first(material::MapsOptions& options, const JobContext& context,
                               const library::TellStep& tell) {
-  if (!options.solve.empty() || options.is_draft || options.is_preview) return {};
+  if (!options.solve.empty() || options.is_draft) return {};
   Result<std::string> made = library::make_solve_first(options.session, context, tell);
   if (!made) return std::move(made).error();
   options.solve = std::move(*made);

@@ -12,7 +12,7 @@ import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
-import {fieldsOf, listIn, numberIn, textIn} from '../../ui/fields';
+import {fieldsOf, listIn, textIn} from '../../ui/fields';
 import {Mark} from '../../ui/mark';
 import {type Wish, wordsOf} from '../../ui/request_schema';
 import {More} from '../../ui/schema_form';
@@ -65,14 +65,18 @@ function Finishing({viewer, maps: {name, solve: {method, set, width, height}}, r
   const [across, down, ofAcross, ofDown] = listIn(document, 'part_mm').map((mm) => Number(mm).toFixed());
   const [kept] = useState(now);
   const made = textIn(document, 'id');
+  const facts = fieldsOf(document);
   const isLooking = fieldsOf(set)['preview'] === true;
   const look: SolveName | null = now.length === 0 ? isLooking ? {session, solve: of.solve} : null : made ? {session, solve: made, isSet: true} : null;
   const lookThere = () => {
     const sight = viewer.sight.value;
-    const isSameSize = numberIn(document, 'width') === width && numberIn(document, 'height') === height;
-    const repeat = fieldsOf(document)['is_tile'] === true ? Math.max(2, sight.repeat) as Repeat : 1;
-    const divider = !look?.isSet ? null : isLooking ? sight.divider : 0.5;
-    if (look) go(addressOfViewer(look, {...(isSameSize ? sight : FIRST_SIGHT), light: sight.light, layer: sight.layer, panel: 'finish', divider, repeat}), isLooking);
+    const {light, layer, repeat} = sight;
+    const isSameSize = facts['width'] === width && facts['height'] === height;
+    if (look) go(addressOfViewer(look, {
+      ...(isSameSize ? sight : FIRST_SIGHT), light, layer, panel: 'finish',
+      divider: isLooking ? sight.divider : 0.5,
+      repeat: facts['is_tile'] ? Math.max(2, repeat) as Repeat : 1,
+    }), isLooking);
   };
   // What is made of a change is looked at; nobody is led away from what he came for.
   useEffect(() => {
