@@ -9,6 +9,7 @@
 #include <deque>
 #include <functional>
 #include <future>
+#include <iterator>
 #include <map>
 #include <new>
 #include <utility>
@@ -203,18 +204,17 @@ class Scan {
       record = {{"from", "meter"}, {"meter", to_json(*metering)}};
     }
     times_.bracket_us = nearest_time_us(shutter_times_us_, exposure_.exposure_us * list_.bracket.value_or(1));
-    record["exposure_us"] = exposure_.exposure_us;
-    record["iso"] = exposure_.iso;
-    record["f_number"] = exposure_.f_number;
+    record.update(
+        {{"exposure_us", exposure_.exposure_us}, {"iso", exposure_.iso}, {"f_number", exposure_.f_number}});
     if (list_.bracket) record["bracket_us"] = times_.bracket_us;
     if (list_.below) {
       const Result<double> below_us = time_of_light_below();
       if (!below_us) return below_us.error();
       record["below_us"] = times_.below_us = *below_us;
     }
-    for (std::string& warning :
-         bracket_warnings(list_, exposure_.exposure_us, times_.bracket_us, calibration_))
-      warnings_.push_back(std::move(warning));
+    std::ranges::move(bracket_warnings(list_, exposure_.exposure_us, times_.bracket_us, calibration_),
+                      std::back_inserter(warnings_));
+    if (report_.phase() == ScanPhase::kMetering) report_.phase(ScanPhase::kExposing);
     report_.change([&](ScanStatus& status) { status.exposure_us = exposure_.exposure_us; });
     return journal_->set_exposure(record);
   }

@@ -36,6 +36,7 @@ void Report::change(const std::function<void(ScanStatus&)>& change) {
 
 void Report::phase(ScanPhase phase, std::string why) {
   change([&](ScanStatus& status) {
+    if (status.phase == ScanPhase::kMetering) status.led = 0;  // its test shots are no LED's photograph
     status.phase = phase;
     status.why = std::move(why);
   });

@@ -369,9 +369,13 @@ TEST(Scan, IsMeteringAgainAfterAPauseAndAFaultOfItsTestShots) {
     if (status.exposure_us > 0) break;
     if (phases.empty() || phases.back() != status.phase) phases.push_back(status.phase);
   }
-  EXPECT_THAT(phases,
-              testing::ElementsAre(ScanPhase::kConnecting, ScanPhase::kMetering, ScanPhase::kPaused,
-                                   ScanPhase::kMetering, ScanPhase::kRecovering, ScanPhase::kMetering));
+  EXPECT_THAT(phases, testing::ElementsAre(ScanPhase::kConnecting, ScanPhase::kMetering, ScanPhase::kPaused,
+                                           ScanPhase::kMetering, ScanPhase::kRecovering, ScanPhase::kMetering,
+                                           ScanPhase::kExposing));
+  const auto meters_on = [](const ScanStatus& status) {
+    return status.exposure_us > 0 && status.phase == ScanPhase::kMetering;
+  };
+  EXPECT_EQ(std::ranges::count_if(bench.statuses, meters_on), 0) << "the exposure is known";
 }
 
 TEST(Scan, GivesTheCodeOfWhatAFrameIsWarnedOf) {
