@@ -53,7 +53,9 @@ std::vector<std::uint8_t> live_picture(const LightFrames& frames, const Gathered
       for (std::size_t c = 0; c < 3; ++c) planes[c].push_back(cell[c]);
     }
   }
-  const std::array<double, 3> gain = {gain_of(planes[0]), gain_of(planes[1]), gain_of(planes[2])};
+  const Rgb& balance = frames.scene().lights.white_balance;
+  double white_gain = kMostGain;
+  for (std::size_t c = 0; c < 3; ++c) white_gain = std::min(white_gain, balance[c] * gain_of(planes[c]));
   std::vector<std::uint8_t> picture;
   const auto key = simulator::random_key(frames.scene());
   for (int y = 0; y < height; ++y) {
@@ -63,7 +65,8 @@ std::vector<std::uint8_t> live_picture(const LightFrames& frames, const Gathered
       const simulator::NormalPair noise = simulator::normal_pair(
           simulator::philox({static_cast<std::uint32_t>(at), light.noise_key, 0, 2}, key));
       for (std::size_t c = 0; c < 3; ++c) {
-        const double seen = gain[c] * (planes[c][at] + kReadNoise * (c == 1 ? noise.first : noise.second));
+        const double seen =
+            white_gain / balance[c] * (planes[c][at] + kReadNoise * (c == 1 ? noise.first : noise.second));
         const double shown = 255 * std::pow(std::clamp(seen, 0.0, 1.0), kGamma);
         picture.push_back(static_cast<std::uint8_t>(std::lround(shown)));
       }
