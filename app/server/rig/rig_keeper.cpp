@@ -11,6 +11,7 @@
 #include "app/server/http/error_reply.h"
 #include "app/server/rig/watched_camera.h"
 #include "core/describe/error_json.h"
+#include "core/rig/session.h"
 #include "library/catalogue/session_files.h"
 
 namespace weft::app {
@@ -104,6 +105,8 @@ Result<void> RigKeeper::begin(capture::ScanRequest request, const std::string& b
   pace_ = {};
   pause_ = false;
   request_ = is_scan ? std::optional(request) : std::nullopt;
+  begun_ = is_scan && !request.again ? Screens::Clock::now() : Screens::Clock::time_point();
+  show_kept_locked();
   tell_status_locked();
   // The last one's thread has done its last deed once running_ is false: joining it here takes no time.
   scan_ = std::jthread([this, request = std::move(request), by, work = std::move(work), is_scan,
@@ -206,6 +209,19 @@ void RigKeeper::log_once(const char* event, const std::string& why) {
   if (std::exchange(logged_, why) != why) log_.add(event, why);
 }
 
+// What an earlier run has kept.
+void RigKeeper::show_kept_locked() {
+  if (!request_) return;
+  const Result<Session> session = read_session(request_->session);
+  if (!session) return;  // a new one, or the scan says what is wrong with it
+  for (const Shot& shot : session->shots) {
+    LedStatus* led = lit_shot_of(shot.led, shot.role, shot.polariser);
+    if (led == nullptr || shot.superseded_by || shot.index == request_->again) continue;
+    led->state = LedStatus::State::kKept;
+    led->takes = 1;
+  }
+}
+
 // Where the shot that lights a LED for the first time stands, or lights it again at another exposure; null
 // for all others.
 LedStatus* RigKeeper::lit_shot_of(int led, ShotRole role, Polariser polariser) {
@@ -221,6 +237,7 @@ LedStatus* RigKeeper::lit_shot_of(int led, ShotRole role, Polariser polariser) {
 // No light is lit yet in the first of these phases.
 void RigKeeper::on_status(const capture::ScanStatus& status) {
   const bool is_dark = screens_.go_black() && exposes(status.phase);
+  if (is_dark) screens_.wait_until_announced(begun_);
   const bool was_dark = tell_scan(status, is_dark);
   if (is_dark && !was_dark) screens_.wait_until_black();
 }
@@ -325,6 +342,10 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
     // What cannot be done is not gone on with.
     if (outcome.error().kind == ErrorKind::kUsage) request_.reset();
   }
+  for (LedStatus& led : status_.leds) {
+    const bool is_open = led.state == LedStatus::State::kExposing || led.state == LedStatus::State::kChecking;
+    if (is_open) led.state = LedStatus::State::kWaiting;
+  }
   status_.state = outcome || cancelled ? RigStatus::State::kIdle : RigStatus::State::kFailed;
   status_.scan.led = 0;
   status_.is_dark = false;
@@ -339,6 +360,13 @@ RigStatus RigKeeper::status_locked() const {
   RigStatus status = status_;
   Attendance::Status attended = attendance_.status();
   if (running_) status.left_s = pace_.left_s();
+  // Nobody knows how long a device will be waited for.
+  const bool is_announced =
+      screens_.go_black() && begun_ != Screens::Clock::time_point() && status.scan.why.empty();
+  if (status.state == RigStatus::State::kConnecting && is_announced) {
+    const std::chrono::duration<double> left = begun_ + Screens::kAnnounced - Screens::Clock::now();
+    status.dark_in_s = std::max(0.0, left.count());
+  }
   const bool is_finished = status.scan.phase == capture::ScanPhase::kComplete;
   status.can_go_on = !running_ && request_ && !is_finished;
   const bool is_free = status.state == RigStatus::State::kIdle || status.state == RigStatus::State::kFailed;

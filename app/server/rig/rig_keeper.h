@@ -17,6 +17,7 @@
 #include "app/server/rig/logbook.h"
 #include "app/server/rig/rig_status.h"
 #include "app/server/rig/scan_pace.h"
+#include "app/server/rig/screens.h"
 #include "capture/devices.h"
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
@@ -95,6 +96,7 @@ class RigKeeper {
   void on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome, bool is_scan);
   void log_once(const char* event, const std::string& why);
   RigStatus status_locked() const;
+  void show_kept_locked();
   LedStatus* lit_shot_of(int led, ShotRole role, Polariser polariser);
   void tell_status_locked() { events_.add("status", to_json(status_locked(), rig_)); }
 
@@ -116,6 +118,7 @@ class RigKeeper {
   bool stopping_ = false;
   RigStatus status_;
   std::optional<capture::ScanRequest> request_;  ///< of the last scan; none: something else was done
+  Screens::Clock::time_point begun_;             ///< when the scan that is announced began; zero: none is
   ScanPace pace_;
   std::optional<double> pace_s_;  ///< of the last scan that came to its end
   std::atomic<bool> pause_ = false;

@@ -109,6 +109,7 @@ Json to_json(const RigStatus& status, const capture::Rig& rig) {
           {"left_s", status.left_s ? Json(*status.left_s) : nothing},
           {"can", commands_of(status, rig)},
           {"dark", status.is_dark},
+          {"dark_in_s", status.dark_in_s ? Json(*status.dark_in_s) : nothing},
           {"lit", status.lit},
           {"controls", status.controls},
           {"by", status.by},

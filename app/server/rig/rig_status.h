@@ -38,18 +38,19 @@ struct RigStatus {
   bool can_go_on = false;             ///< what failed or was cancelled can be begun again
   std::vector<double> can_light_s;    ///< Attendance::Status
   bool devices_open = false;
-  bool is_dark = false;                        ///< screens that the cloth sees are to be black
-  std::vector<int> lit;                        ///< for a person to see by; a scan's own is scan.led
-  std::string controls;                        ///< who holds them; empty: nobody
-  std::string by;                              ///< who began the scan, or the last one; empty: not known
+  bool is_dark = false;             ///< screens that the cloth sees are to be black
+  std::optional<double> dark_in_s;  ///< they will be, and not sooner; none where it is not announced
+  std::vector<int> lit;             ///< for a person to see by; a scan's own is scan.led
+  std::string controls;             ///< who holds them; empty: nobody
+  std::string by;                   ///< who began the scan, or the last one; empty: not known
   std::optional<capture::CameraFacts> camera;  ///< what it said of itself during that scan
   std::vector<double> exposures_us;            ///< Attendance::Status
   Json place;                                  ///< RigWatch::place()
 };
 
 /// {"rig", "state", "phase", "session", "led", "frames", "frames_planned", "exposure_us", "why", "error",
-/// "warnings", "leds", "left_s", "can", "dark", "lit", "controls", "by", "place", "devices"}, as docs/http.md
-/// says.
+/// "warnings", "leds", "left_s", "can", "dark", "dark_in_s", "lit", "controls", "by", "place", "devices"}, as
+/// docs/http.md says.
 Json to_json(const RigStatus& status, const capture::Rig& rig);
 
 }  // namespace weft::app

@@ -192,6 +192,12 @@ TEST(RigServer, SaysWhyAScanFailedAndLetsItBeResumed) {
   EXPECT_EQ(wait_for_state(port, "idle")["frames"], 4);
 }
 
+std::vector<std::string> states_of_leds(const Json& status) {
+  std::vector<std::string> states;
+  for (const Json& led : status["leds"]) states.push_back(led["state"]);
+  return states;
+}
+
 TEST(RigServer, GoesOnWithTheSameSessionAfterAFault) {
   ScriptedRig scripted("goes_on");
   std::atomic<bool> cable = false;
@@ -203,11 +209,19 @@ TEST(RigServer, GoesOnWithTheSameSessionAfterAFault) {
   const auto server = scripted.started();
   const int port = server->port();
   ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
-  EXPECT_THAT(wait_for_state(port, "failed")["can"], Contains("resume"));
+  const Json failed = wait_for_state(port, "failed");
+  EXPECT_THAT(failed["can"], Contains("resume"));
+  EXPECT_EQ(states_of_leds(failed), (std::vector<std::string>{"kept", "waiting", "waiting"}));
   const std::string first = read_session(scripted.session("a"))->shots.at(1).sha256;
+  std::vector<std::string> at_first;
+  scripted.devices = [&]() -> Result<void> {
+    at_first = states_of_leds(ask(port, "GET", "/api/v1/rig").json());
+    return {};
+  };
   cable = true;
   ASSERT_EQ(ask(port, "POST", "/api/v1/scan/resume", "").status, 202);
   const Json status = wait_for_state(port, "idle");
+  EXPECT_EQ(at_first, (std::vector<std::string>{"kept", "waiting", "waiting"})) << "as it goes on";
   EXPECT_EQ(status["session"], "a");
   EXPECT_EQ(status["frames"], 4);
   EXPECT_EQ(status["error"], Json());

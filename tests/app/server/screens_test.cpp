@@ -42,6 +42,23 @@ TEST(Screens, ThatFollowAreWaitedForToBecomeBlack) {
   EXPECT_LT(dark_before_the_first_shot_ms(unfollowed, "/api/v1/events"), 200) << "no screen follows";
 }
 
+TEST(Screens, ThatFollowSayThatTheyWillBeBlackBeforeAScanOfDevicesThatAreOpen) {
+  ScriptedRig scripted("announced");
+  const auto server = scripted.started();
+  const int port = server->port();
+  ASSERT_EQ(ask(port, "POST", "/api/v1/rig/devices", R"({"open": true})").status, 200);
+  RawClient follower(port);
+  follower.say(request_text(port, "GET", "/api/v1/events?screen=1"));
+  follower.hear(seconds(5), "\n\n");
+  const auto begun = std::chrono::steady_clock::now();
+  ASSERT_EQ(ask(port, "POST", "/api/v1/scan", R"({"fabric": "satin"})").status, 202);
+  EXPECT_THAT(follower.hear(seconds(5), "\"dark_in_s\":0."), HasSubstr("\"dark\":false"));
+  EXPECT_THAT(follower.hear(seconds(5), "\"dark\":true"), HasSubstr("\"dark\":true"));
+  const std::chrono::duration<double> announced = std::chrono::steady_clock::now() - begun;
+  EXPECT_GE(announced, Screens::kAnnounced) << announced.count() << " s";
+  wait_for_state(port, "attended");
+}
+
 TEST(Screens, ThatTheClothDoesNotSeeAreLeftAlone) {
   ScriptedRig scripted("unseen");
   scripted.rig.daemon.is_screen_seen = false;

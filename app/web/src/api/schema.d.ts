@@ -6583,6 +6583,8 @@ export interface components {
             can: ("scan" | "devices" | "light" | "test-shot" | "pause" | "resume" | "cancel")[];
             /** @description The table is photographed, or will be in page_dark_ms: screens that it sees are to be black */
             dark: boolean;
+            /** @description Until a scan that looks for its devices turns dark true, at the least; null: nothing is announced */
+            dark_in_s: number | null;
             /** @description LEDs that are lit for a person to see by */
             lit: number[];
             /** @description Who holds them; empty: nobody */
