@@ -4,12 +4,12 @@ import {signal} from '@preact/signals';
 import {render} from 'preact';
 import {answer, api, asApiError, type ApiError} from './api/client';
 import {follow} from './api/events';
-import {DarkPage} from './frame/dark_page';
+import {Countdown, DarkPage} from './frame/dark_page';
 import {Entrance, logIn, takeToken} from './frame/entrance';
 import {Frame} from './frame/frame';
 import {LazyScreen} from './frame/lazy_screen';
 import {become, followAddress, place} from './state/address';
-import {isDark} from './state/dark';
+import {darkIn_s, isDark} from './state/dark';
 import {askForms} from './state/forms';
 import {followKeys} from './state/keys';
 import {followRig, rig} from './state/rig';
@@ -61,6 +61,7 @@ function Page() {
         <Frame><LazyScreen name={screenFor(place.value.screen)} /></Frame>
       </div>
       {isDark.value && <DarkPage />}
+      {darkIn_s.value != null && <Countdown from_s={darkIn_s.value} />}
     </>
   );
 }

@@ -7,16 +7,69 @@ import {mostToTell_ms, startRig, until} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
 const scanTakes_ms = 60_000;
-let browser, rig;
+const windows = [[1280, 720], [1920, 1080], [3840, 2160]];
+let browser, rig, fine;
 before(async () => {
   ({browser, rig} = await setUp());
 });
-after(() => takeDown(browser, rig));
+after(async () => {
+  await takeDown(browser, rig);
+  await fine?.stop();
+});
 
+/** With fewer pixels the tags are too coarse for a finder. */
+async function fineRig() {
+  fine ??= await startRig({megapixels: 1});
+  return fine;
+}
+
+/** The cursor is where the next cloth is named. */
 async function atTheDesk(visitor, {address} = rig) {
   const page = await visitor.open(`${address}/desk`);
+  await page.locator('#scan').waitFor();
+  await page.keyboard.press('n');
   await page.locator('#fabric:focus').waitFor();
   return page;
+}
+
+/** In windows of each size: which of these are not wholly in the stage, with where they are. */
+async function outOfStage(page, ...selectors) {
+  const out = [];
+  for (const [width, height] of windows) {
+    await page.setViewportSize({width, height});
+    await page.waitForTimeout(100);  // layout
+    out.push(...await page.evaluate((those) => {
+      const stage = document.querySelector('.desk .view').getBoundingClientRect();
+      const within = ({left, top, right, bottom}, frame) => left >= frame.left - 1 && top >= frame.top - 1 && right <= frame.right + 1 && bottom <= frame.bottom + 1;
+      const seen = those.flatMap((selector) => [...document.querySelectorAll(selector)].map((element) => [selector, element.getBoundingClientRect()]));
+      const isMissing = those.filter((selector) => !document.querySelector(selector));
+      const isOut = seen.filter(([, box]) => !within(box, stage) || !within(stage, new DOMRect(0, 0, innerWidth, innerHeight)));
+      return [...isMissing, ...isOut.map(([selector, box]) => `${selector} in ${innerWidth} x ${innerHeight}: ${JSON.stringify(box)}`)];
+    }, selectors));
+  }
+  return out;
+}
+
+/** Mean colour of the finder's brightest places. */
+async function whiteOf(page) {
+  const mean = await page.waitForFunction(() => {
+    const canvas = document.querySelector('.finder canvas');
+    const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    const bright = [];
+    for (let at = 0; at < data.length; at += 4) if (data[at + 1] > 200) bright.push([...data.subarray(at, at + 3)]);
+    return bright.length > 1000 && [0, 1, 2].map((channel) => bright.reduce((sum, colour) => sum + colour[channel], 0) / bright.length);
+  });
+  return mean.jsonValue();
+}
+
+/** What lies over a button, at its middle and its corners. */
+async function liesOver(button) {
+  return button.evaluate((element) => {
+    const {left, top, right, bottom} = element.getBoundingClientRect();
+    const points = [[(left + right) / 2, (top + bottom) / 2], [left + 8, top + 8], [right - 8, top + 8], [left + 8, bottom - 8], [right - 8, bottom - 8]];
+    const others = points.map(([x, y]) => document.elementFromPoint(x, y)).filter((other) => !element.contains(other));
+    return others.map((other) => other?.className ?? 'it is out of the window');
+  });
 }
 
 /** A scan of 13 shots takes 3.5 s as it is metered: this one is not over before somebody has looked at it. */
@@ -115,6 +168,7 @@ test('after a scan there are ten photographs with their verdict and the relit cl
   await result.getByRole('img', {name: 'The cloth, relit'}).waitFor({timeout: scanTakes_ms});
   assert.deepEqual(await violations(page), []);
   await picture(page, 'desk-scanned');
+  assert.deepEqual(await outOfStage(page, '.preview', '.frame-card', '.price .button.main'), []);
   await result.getByRole('button', {name: 'Shoot LED 3 again'}).click();
   await page.locator('.dark').waitFor();
   await page.locator('.dark').waitFor({state: 'detached', timeout: scanTakes_ms});
@@ -222,6 +276,62 @@ test('from before the first exposure to the close of the last every tab is black
   await visitor.leave();
 });
 
+test('the dark is counted down to on every tab, and its end is heard once unless that is unwanted', async () => {
+  const visitor = await visit(browser, rig);
+  await visitor.context.addInitScript(() => {
+    window.tones = 0;
+    window.AudioContext = class extends AudioContext {
+      constructor() {
+        super();
+        window.tones++;
+      }
+    };
+    window.counted = [];
+    new MutationObserver(() => {
+      const said = document.querySelector('.soon')?.textContent ?? (document.querySelector('.dark') && 'dark');
+      if (said && said !== window.counted.at(-1)) window.counted.push(said);
+    }).observe(document, {subtree: true, childList: true, characterData: true});
+  });
+  const other = await visitor.open(`${rig.address}/sessions`);
+  const page = await atTheDesk(visitor);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('v');  // devices that are open are there at once
+  await page.getByRole('img', {name: 'Live view'}).waitFor();
+  await page.keyboard.press('n');
+  await scanByKeys(page, 'heard');
+  for (const tab of [page, other]) {
+    const counted = await tab.evaluate(() => window.counted);
+    const of = ['Dark in 3', 'Dark in 2', 'Dark in 1', 'dark'];
+    assert.deepEqual(counted, of.filter((one) => counted.includes(one)), 'it counts down');
+    assert.equal(counted[0], 'Dark in 3');
+    assert.equal(counted.at(-1), 'dark');
+  }
+  assert.equal(await page.evaluate(() => window.tones), 1);
+  assert.equal(await other.evaluate(() => window.tones), 0, 'nobody has touched that page');
+  await page.keyboard.press('n');
+  await page.getByLabel('Tone at its end').uncheck();
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('n');
+  await scanByKeys(page, 'unheard');
+  assert.equal(await page.evaluate(() => window.tones), 1);
+  await visitor.leave();
+});
+
+test('a key at the dark page shows how long it takes, for two seconds', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  await nameSlowScan(page, 'how long');
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Space');
+  await page.locator('.dark').waitFor();
+  await until(async () => (await rig.ask('rig')).left_s !== null);
+  await page.keyboard.press('h');
+  await page.locator('.dark').getByText(/\d of 13, \d+\.\d s left/).waitFor();
+  await page.locator('.dark p').waitFor({state: 'detached'});
+  await page.locator('.dark').waitFor({state: 'detached', timeout: scanTakes_ms});
+  await visitor.leave();
+});
+
 test('a key at the dark page shows how things are for two seconds, and Escape and Enter cancel', async () => {
   const visitor = await visit(browser, rig);
   const page = await atTheDesk(visitor);
@@ -242,10 +352,48 @@ test('a key at the dark page shows how things are for two seconds, and Escape an
   await visitor.leave();
 });
 
-test('live view asks for one picture at a time, and for none while its tab is hidden', async (t) => {
-  const fine = await startRig({megapixels: 1});  // with fewer the tags are too coarse for a finder
-  t.after(() => fine.stop());
-  const visitor = await visit(browser, fine);
+test('a key does what it says from the first, and types nothing', async () => {
+  const visitor = await visit(browser, await fineRig(), {height: 720});
+  const page = await visitor.open(`${fine.address}/desk`);
+  await page.getByText('shows what the camera sees').waitFor();
+  await page.keyboard.press('v');
+  await page.getByRole('img', {name: 'Live view'}).waitFor();
+  await page.keyboard.press('t');
+  await page.locator('.test-shot').waitFor();
+  assert.equal(await page.getByLabel('Fabric').inputValue(), '');
+  await page.keyboard.press('Space');
+  await page.locator('#fabric:focus').waitFor();
+  await visitor.leave();
+});
+
+test('live view fits windows of every size with what is said of it, and nothing lies over Scan', async () => {
+  const visitor = await visit(browser, await fineRig());
+  const page = await atTheDesk(visitor, fine);
+  await page.keyboard.type('a cloth with a bill');
+  await page.getByRole('region', {name: 'What the scan takes'}).waitFor();
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('v');
+  await page.getByText(/4 of 4 tags in sight/).waitFor();
+  assert.deepEqual(await outOfStage(page, '.finder canvas', '.finder figcaption', '.finder .tag'), []);
+  const [red, green, blue] = await whiteOf(page);
+  assert.ok(Math.abs(red / green - 1) < 0.04 && Math.abs(blue / green - 1) < 0.04, `white paper is ${red}, ${green}, ${blue}`);
+  for (const [width, height] of windows) {
+    await page.setViewportSize({width, height});
+    await page.waitForTimeout(100);  // layout
+    const [stage, shown, said] = await Promise.all(['.desk .view', '.finder canvas', '.finder figcaption'].map((one) => page.locator(one).boundingBox()));
+    const filled = Math.max(shown.width / stage.width, shown.height / stage.height);
+    assert.ok(filled > 0.93, `in ${width} x ${height} it fills ${filled} of its place`);
+    assert.ok(said.y > shown.y && said.y + said.height < shown.y + shown.height, 'what is said of it lies on it');
+    assert.ok(said.height > height / 80, `its text is ${said.height} of ${height} pixels high`);
+    assert.deepEqual(await liesOver(page.locator('#scan')), [], `in ${width} x ${height}`);
+    assert.deepEqual(await violations(page), []);
+    await picture(page, `desk-live-${width}`);
+  }
+  await visitor.leave();
+});
+
+test('live view asks for one picture at a time, and for none while its tab is hidden', async () => {
+  const visitor = await visit(browser, await fineRig());
   const page = await atTheDesk(visitor, fine);
   const asked = [];
   let atOnce = 0;
@@ -290,6 +438,7 @@ test('a test shot tells exposure and focus, and a turned ring is seen', async ()
   assert.equal(tile, 512, 'the loupe shows the photograph pixel by pixel');
   await picture(page, 'desk-focus');
   assert.deepEqual(await violations(page), []);
+  assert.deepEqual(await outOfStage(page, '.overview', '.facts', '.loupe'), []);
   await rig.inject('focus 0');
   await visitor.leave();
 });
@@ -335,6 +484,11 @@ for (const [how, goOn] of [
     const before = await kept();
     assert.ok(before.length > 2, `${before.length} were kept`);
     await picture(page, 'desk-fault');
+    await page.setViewportSize({width: 1280, height: 720});
+    assert.deepEqual(await liesOver(page.getByRole('button', {name: 'Go on'})), []);
+    assert.deepEqual(await liesOver(page.locator('#scan')), []);
+    await page.getByLabel('Exposure').scrollIntoViewIfNeeded();
+    assert.deepEqual(await liesOver(page.getByLabel('Exposure')), [], 'what is to be mended');
     await rig.inject('light normal');
     await goOn(page);
     await page.getByRole('region', {name: 'Last scan'}).getByText(`fault ${how}`, {exact: true}).waitFor({timeout: scanTakes_ms});

@@ -196,13 +196,16 @@ test('who keeps the rig to himself is named, and one press gives it back to all'
 test('the keys are listed by ?, and none of them fires in a text field', async () => {
   const visitor = await visit(browser, rig);
   const page = await enter(visitor);
-  await page.locator('#fabric:focus').waitFor();
+  await page.setViewportSize({width: 1280, height: 720});
+  await page.locator('#scan').waitFor();
+  await page.keyboard.press('n');
   await page.keyboard.type('what?');
   assert.equal(await page.getByLabel('Fabric').inputValue(), 'what?');
   assert.equal(await page.getByRole('dialog').count(), 0);
   await page.keyboard.press('Escape');
   await page.keyboard.press('?');
   await page.getByRole('dialog').getByText('full screen').waitFor();
+  assert.equal(await page.getByRole('dialog').evaluate((dialog) => dialog.scrollTop), 0, 'it opens at its beginning');
   await page.keyboard.press('Escape');
   await page.getByRole('dialog').waitFor({state: 'detached'});
   await visitor.leave();

@@ -3,6 +3,8 @@
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {answer, api} from '../api/client';
 import {connection, rig} from '../state/rig';
+import {sound} from '../state/tone';
+import {durationOf} from '../ui/words';
 import {silenceInWords, stateInWords} from './rig_words';
 
 const glimpse_ms = 2000;
@@ -10,7 +12,18 @@ const glimpse_ms = 2000;
 function knownInWords(): string {
   const {age_s} = connection.value;
   if (age_s > 0 || !rig.value) return silenceInWords(age_s);
-  return `${stateInWords(rig.value)}, ${rig.value.frames} of ${rig.value.frames_planned}.`;
+  const {frames, frames_planned, left_s} = rig.value;
+  return `${stateInWords(rig.value)}, ${frames} of ${frames_planned}${left_s === null ? '' : `, ${durationOf(left_s)} left`}.`;
+}
+
+/** Says that it will be dark, before it is. */
+export function Countdown({from_s}: {from_s: number}) {
+  const [count, setCount] = useState(3);
+  useEffect(() => {
+    const timer = setInterval(() => setCount((before) => before - 1 || 1), (from_s * 1000) / 3);
+    return () => clearInterval(timer);
+  }, []);
+  return <p class="panel soon" role="status">Dark in {count}</p>;
 }
 
 function cancelScan(): void {
@@ -23,7 +36,11 @@ export function DarkPage() {
   const timer = useRef(0);
   useEffect(() => {
     page.current?.focus();
-    return () => clearTimeout(timer.current);
+    return () => {
+      clearTimeout(timer.current);
+      // A test shot is over before anybody looks away.
+      if (rig.value?.dark === false && rig.value.state !== 'attended') sound();
+    };
   }, []);
 
   const show = (what: 'status' | 'cancel') => {

@@ -6,3 +6,6 @@ import {computed} from '@preact/signals';
 import {connection, rig} from './rig';
 
 export const isDark = computed(() => rig.value?.dark === true && connection.value.state !== 'silent');
+
+/** Seconds from when it is said until it is dark, at the least; null, undefined: it is not about to be. */
+export const darkIn_s = computed(() => (connection.value.state === 'silent' ? null : rig.value?.dark_in_s));

@@ -16,7 +16,10 @@ function keepKeys(event: TargetedKeyboardEvent<HTMLDialogElement>): void {
 /** A question or a list before everything else; Escape closes it and the focus goes back. */
 export function Dialog({title, onClose, children}: DialogProps) {
   const dialog = useRef<HTMLDialogElement>(null);
-  useEffect(() => dialog.current?.showModal(), []);
+  useEffect(() => {
+    dialog.current?.showModal();
+    dialog.current?.scrollTo(0, 0);  // it is scrolled to what has the focus
+  }, []);
   return (
     <dialog ref={dialog} aria-labelledby="dialog-title" onClose={onClose} onKeyDown={keepKeys}>
       <h2 id="dialog-title">{title}</h2>

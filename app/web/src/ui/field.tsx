@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {ComponentChildren} from 'preact';
-import {useEffect, useRef} from 'preact/hooks';
 
 interface FieldProps {
   label: string;
@@ -19,17 +18,11 @@ interface FieldProps {
   /** Proposals. */
   list?: readonly string[];
   id?: string;
-  /** When it is first shown. */
-  hasFocus?: boolean;
 }
 
 /** A line to type in, with its name above and what is to be known of it below. */
-export function Field({label, value, onInput, onEnter, onLeave, unit, hint, placeholder, type = 'text', isDisabled, isWrong, list, id, hasFocus}: FieldProps) {
+export function Field({label, value, onInput, onEnter, onLeave, unit, hint, placeholder, type = 'text', isDisabled, isWrong, list, id}: FieldProps) {
   const name = id ?? `field-${label.toLowerCase().replace(/[^a-z]+/g, '-')}`;
-  const input = useRef<HTMLInputElement>(null);
-  useEffect(() => {
-    if (hasFocus) input.current?.focus();
-  }, [hasFocus]);
   const enter = (event: KeyboardEvent) => {
     if (event.key !== 'Enter' || !onEnter) return;
     event.preventDefault();
@@ -39,7 +32,7 @@ export function Field({label, value, onInput, onEnter, onLeave, unit, hint, plac
     <div class="field">
       <label for={name}>{label}</label>
       <div class="row">
-        <input ref={input} id={name} type={type} value={value} placeholder={placeholder} disabled={isDisabled} autocomplete="off"
+        <input id={name} type={type} value={value} placeholder={placeholder} disabled={isDisabled} autocomplete="off"
           spellcheck={false} list={list && `${name}-list`} aria-describedby={hint ? `${name}-hint` : undefined}
           aria-invalid={isWrong || undefined}
           step={type === 'number' ? 'any' : undefined}

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is said of the next cloth, and what its scan would be called and take.
+import type {Signal} from '@preact/signals';
+import {hasTone} from '../../state/tone';
 import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
 import {BillView} from './bill';
@@ -20,7 +22,7 @@ function takeNearest(): void {
 function Proposed() {
   const {would, refused} = proposal.value;
   if (refused) return <Complaint error={refused} />;
-  if (!would) return <p class="hint">Say what cloth it is; its session is named after it.</p>;
+  if (!would) return <p class="dim"><kbd>n</kbd> Say what cloth it is; its session is named after it.</p>;
   return (
     <div class="proposed" role="status">
       <span class="dim">{would.resumed ? `Goes on with (${would.frames ?? 0} of ${would.frames_planned ?? 0} photographs)` : 'Next session'}</span>
@@ -30,24 +32,33 @@ function Proposed() {
   );
 }
 
+function Check({says, of}: {says: string; of: Signal<boolean>}) {
+  return (
+    <label class="check">
+      <input type="checkbox" checked={of.value} onChange={(event) => { of.value = event.currentTarget.checked; }} />
+      {says}
+    </label>
+  );
+}
+
 /** Kept from cloth to cloth. */
 function MoreShots({onSaid}: {onSaid: () => void}) {
   return (
     <div class="pair">
-      <label class="check">
-        <input type="checkbox" checked={repeats.value} onChange={(event) => { repeats.value = event.currentTarget.checked; }} />
-        Repeat
-      </label>
+      <div>
+        <Check says="Repeat" of={repeats} />
+        <Check says="Tone at its end" of={hasTone} />
+      </div>
       <Field label="Bracket" type="number" unit="×" placeholder="none" value={bracket.value} onInput={(value) => { bracket.value = value; }} onEnter={onSaid} />
     </div>
   );
 }
 
-export function ClothForm({onSaid, hasFocus}: {onSaid: () => void; hasFocus: boolean}) {
+export function ClothForm({onSaid}: {onSaid: () => void}) {
   const {fabric, id, tags, height_mm, exposure_ms} = cloth.value;
   return (
     <form class="cloth" onSubmit={(event) => event.preventDefault()}>
-      <Field id="fabric" label="Fabric" value={fabric} onInput={(value) => say({fabric: value})} onEnter={onSaid} hasFocus={hasFocus} />
+      <Field id="fabric" label="Fabric" value={fabric} onInput={(value) => say({fabric: value})} onEnter={onSaid} />
       <Proposed />
       <Field label="Barcode" value={id} onInput={(value) => say({id: value})} onEnter={onSaid} />
       <Field label="Tags" value={tags} placeholder="red, wool" onInput={(value) => say({tags: value})} onEnter={onSaid} />

@@ -6,10 +6,6 @@ import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
 import {isDark} from '../../state/dark';
-import {rig} from '../../state/rig';
-import {useAction} from '../../ui/action';
-import {Button} from '../../ui/button';
-import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
 import {ClothForm} from './cloth_form';
 import {followFinder, looks, shots, takeShot} from './devices';
@@ -46,17 +42,6 @@ function useCalibrated(): Calibrated {
 
 const wantedParts = ['camera', 'response', 'lights'];
 
-/** A scan that did not end. */
-function GoOn({name}: {name: string}) {
-  const goOn = useAction(() => answer(api.POST('/api/v1/scan', {body: {session: name}})));
-  return (
-    <p>
-      <Button isDisabled={goOn.isBusy || !rig.value?.can.includes('scan')} onClick={() => void goOn.run()}>Go on with {name}</Button>
-      <Complaint error={goOn.complaint} />
-    </p>
-  );
-}
-
 /** With nothing to look at yet: what to do first. */
 function FirstSteps({parts}: Pick<Calibrated, 'parts'>) {
   const missing = wantedParts.filter((part) => parts && !parts.includes(part));
@@ -70,11 +55,10 @@ function FirstSteps({parts}: Pick<Calibrated, 'parts'>) {
   }
   return (
     <Empty says="Nothing to look at yet.">
-      {rig.value?.resumable.slice(0, 3).map((name) => <GoOn key={name} name={name} />)}
       <ol>
         <li>Lay a cloth on the table. <kbd>v</kbd> shows what the camera sees.</li>
         <li><kbd>t</kbd> takes a test shot: it tells how sharp and how bright it is.</li>
-        <li>Type what cloth it is, press Enter, then <kbd>Space</kbd>.</li>
+        <li><kbd>n</kbd> begins a cloth: type what it is, press Enter, then <kbd>Space</kbd>.</li>
       </ol>
       <p><a href="/doctor">What is wrong with the rig, if anything</a></p>
       <p><a href="/calibrate">How well it is calibrated</a></p>
@@ -121,8 +105,7 @@ export default function DeskScreen() {
         <LedStrip />
       </section>
       <aside class="side" aria-label="Scan">
-        <ClothForm onSaid={() => focusOn(scanButton)} hasFocus />
-        <ScanControls />
+        <ScanControls><ClothForm onSaid={() => focusOn(scanButton)} /></ScanControls>
       </aside>
     </div>
   );

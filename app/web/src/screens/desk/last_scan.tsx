@@ -92,8 +92,8 @@ export function LastScan({session}: {session: Session}) {
       <div class="row">
         <h2>{session.fabric}</h2>
         <a href={`/sessions/${session.name}`}>{session.name}</a>
+        <VerdictLine verdict={session.verdict} warnings={session.warnings} />
       </div>
-      <VerdictLine verdict={session.verdict} warnings={session.warnings} />
       <div class="results">
         <Preview session={session.name} />
         <ul class="frames">{current.map((frame) => <FrameCard key={frame.index} session={session} frame={frame} />)}</ul>

@@ -35,6 +35,11 @@ function Shape({shape, kind}: {shape: Schemas['FramedShape']; kind: string}) {
   return <polygon class={kind} points={shape.corners.map((corner) => corner.join(',')).join(' ')} />;
 }
 
+/** As wide and as high as its place allows, in the shape of the picture. */
+export function aspectOf(shown: {width: number; height: number} | null): string | undefined {
+  return shown ? `--aspect: ${shown.width / shown.height}` : undefined;
+}
+
 interface FinderProps {
   /** Where the calibration has the table's tags. */
   belongs: readonly Schemas['FramedShape'][];
@@ -47,8 +52,8 @@ export function Finder({belongs}: FinderProps) {
     if (canvas.current && picture.value) draw(canvas.current, picture.value);
   });
   return (
-    <figure class="finder">
-      <div class="sheet" style={{transform: turn.value === '180' ? 'rotate(180deg)' : 'none'}}>
+    <figure class="finder sheet" style={aspectOf(picture.value)}>
+      <div style={{rotate: `${turn.value}deg`}}>
         <canvas ref={canvas} role="img" aria-label="Live view" hidden={!picture.value} />
         <svg viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
           {showsGrid.value && <Grid />}
@@ -57,8 +62,7 @@ export function Finder({belongs}: FinderProps) {
           {framing.value?.board && <Shape shape={framing.value.board} kind="board" />}
         </svg>
       </div>
-      {!picture.value && !trouble.value && <p class="waits">Waiting for the first picture</p>}
-      <Complaint error={trouble.value} />
+      {trouble.value ? <Complaint error={trouble.value} /> : !picture.value && <p class="waits">Waiting for the first picture</p>}
       <figcaption>Framing only: the camera chooses its exposure. {tagsInWords(belongs.length)}</figcaption>
     </figure>
   );

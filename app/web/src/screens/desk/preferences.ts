@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a person likes the desk, kept by this browser.
-import {effect, signal, type Signal} from '@preact/signals';
-
-function kept<T>(name: string, first: T): Signal<T> {
-  const key = `weft.desk.${name}`;
-  const before = localStorage.getItem(key);
-  const preference = signal<T>(before === null ? first : (JSON.parse(before) as T));
-  effect(() => localStorage.setItem(key, JSON.stringify(preference.value)));
-  return preference;
-}
+// How a person likes the desk.
+import {kept} from '../../state/kept';
 
 export const showsGrid = kept<boolean>('grid', true);
 export const showsEdges = kept<boolean>('edges', false);

@@ -22,6 +22,11 @@ export async function beginScan(reason: string): Promise<void> {
   await withDevicesFree(() => answer(api.POST('/api/v1/scan', {body})));
 }
 
+/** Takes what is missing of a session that did not end. */
+export async function goOnWith(session: string): Promise<void> {
+  await withDevicesFree(() => answer(api.POST('/api/v1/scan', {body: {session}})));
+}
+
 export async function ask(what: 'pause' | 'resume' | 'cancel'): Promise<void> {
   await answer(api.POST(`/api/v1/scan/${what}`, {body: {}}));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one Scan key, and what can be done while a scan runs.
-import {useState} from 'preact/hooks';
+import type {ComponentChildren} from 'preact';
+import {useEffect, useRef, useState} from 'preact/hooks';
 import {rig} from '../../state/rig';
 import {useKeys} from '../../state/keys';
 import {useAction, type Action} from '../../ui/action';
@@ -12,8 +13,8 @@ import {Share} from '../../ui/share';
 import {cloth, forgetCloth} from './cloth';
 import {exposureField} from './cloth_form';
 import {holdOf} from './hold';
-import {chosen} from './proposal';
-import {ask, beginScan, pauseOrGoOn, scanned, showsScanned} from './scan';
+import {chosen, proposal} from './proposal';
+import {ask, beginScan, goOnWith, pauseOrGoOn, scanned, showsScanned} from './scan';
 
 export const scanButton = 'scan';
 export const nextButton = 'next-cloth';
@@ -73,7 +74,23 @@ function Moved({reason, onInput}: {reason: string; onInput: (reason: string) => 
   );
 }
 
-export function ScanControls() {
+/** The last scan that did not end. */
+function Unfinished() {
+  const {resumable = [], phase, session, can = []} = rig.value ?? {};
+  const [name = '', ...others] = phase === 'cancelled' && session ? [session, ...resumable] : resumable;
+  const goOn = useAction(() => goOnWith(name));
+  if (!name) return null;
+  return (
+    <div class="panel">
+      <Button isDisabled={goOn.isBusy || !can.includes('scan')} onClick={() => void goOn.run()}>Go on with {name}</Button>
+      {others.length > 0 && <a href="/sessions">{others.length} more did not end</a>}
+      <Complaint error={goOn.complaint} />
+    </div>
+  );
+}
+
+/** What is said of the scan scrolls with the form; its button is always there. */
+export function ScanControls({children}: {children: ComponentChildren}) {
   const [asksToCancel, askToCancel] = useState(false);
   const [reason, setReason] = useState('');
   const scan = useAction(() => beginScan(reason));
@@ -91,17 +108,25 @@ export function ScanControls() {
     {key: 'p', does: 'pause the scan, or go on', run: () => void hold.run()},
     {key: 'n', does: 'next cloth', run: nextCloth},
   ]);
+  const said = useRef<HTMLDivElement>(null);
+  const fault = status?.error?.what ?? scan.complaint?.what;
+  useEffect(() => said.current?.scrollTo(0, 0), [fault]);
   if (!status) return null;
   const isAtWork = ['connecting', 'scanning', 'paused'].includes(status.state);
   const isDone = showsScanned.value && scanned.value !== null;
   return (
-    <div class="scan-controls">
-      {(isAtWork || status.error) && <Running hold={hold} onCancel={() => askToCancel(true)} />}
-      {!isAtWork && isDone && <Button id={nextButton} kind="main" keyHint="n" onClick={nextCloth}>Next cloth</Button>}
-      {!isAtWork && !isDone && <Button id={scanButton} kind="main" keyHint="Space" isDisabled={!isReady} onClick={start}>Scan</Button>}
-      <Complaint error={scan.complaint} />
-      {scan.complaint?.code === 'rig_moved' && <Moved reason={reason} onInput={setReason} />}
+    <>
+      <div ref={said} class="said">
+        {isAtWork || status.error ? <Running hold={hold} onCancel={() => askToCancel(true)} /> : <Unfinished />}
+        {![status.error?.what, proposal.value.refused?.what].includes(scan.complaint?.what) && <Complaint error={scan.complaint} />}
+        {scan.complaint?.code === 'rig_moved' && <Moved reason={reason} onInput={setReason} />}
+        {children}
+      </div>
+      <div class="scan-controls">
+        {!isAtWork && isDone && <Button id={nextButton} kind="main" keyHint="n" onClick={nextCloth}>Next cloth</Button>}
+        {!isAtWork && !isDone && <Button id={scanButton} kind="main" keyHint="Space" isDisabled={!isReady} onClick={start}>Scan</Button>}
+      </div>
       {asksToCancel && <Cancel onClose={() => askToCancel(false)} />}
-    </div>
+    </>
   );
 }

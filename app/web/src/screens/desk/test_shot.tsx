@@ -11,6 +11,7 @@ import {exposedOf} from './clipping';
 import {say} from './cloth';
 import {shots} from './devices';
 import {exposureInWords, millisecondsOf} from './exposure';
+import {aspectOf} from './live_view';
 import {Loupe} from './loupe';
 
 type TestShot = Schemas['TestShot'];
@@ -85,7 +86,7 @@ function Overview({shot, onPlace, place}: {shot: TestShot; place: Point; onPlace
     onPlace({x: clamp(place.x + by.x), y: clamp(place.y + by.y)});
   };
   return (
-    <figure class="overview" tabIndex={0} role="group" aria-label="Test shot: point at a place, or move by arrow keys" onPointerMove={point} onKeyDown={press}>
+    <figure class="overview sheet" style={aspectOf(shot)} tabIndex={0} role="group" aria-label="Test shot: point at a place, or move by arrow keys" onPointerMove={point} onKeyDown={press}>
       <img src={`/api/v1/rig/test-shots/${shot.id}/picture`} alt={`Test shot ${shot.id}`} />
       {shot.focus && <FocusMap focus={shot.focus} />}
     </figure>
@@ -149,8 +150,8 @@ export function TestShotView() {
   return (
     <div class="test-shot">
       <Overview shot={shot} place={place} onPlace={setPlace} />
-      <Loupe shot={shot} place={place} />
       <Facts shot={shot} />
+      <Loupe shot={shot} place={place} />
     </div>
   );
 }
