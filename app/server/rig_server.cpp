@@ -43,7 +43,7 @@ struct RigServer::State {
       : rig(its_rig),
         lock(std::move(its_lock)),
         log(lock.folder() / "log", std::move(say)),
-        pictures(lock.folder() / "pictures"),
+        pictures(lock.folder() / "pictures", 2000, [this] { return capture::calibration_now(rig); }),
         views(lock.folder() / "views"),
         swatches(lock.folder() / "swatches"),
         watch(rig, [this] { keeper.tell_status(); }),

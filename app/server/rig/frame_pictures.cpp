@@ -8,6 +8,7 @@
 #include <map>
 #include <span>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "app/server/http/error_reply.h"
@@ -16,6 +17,7 @@
 #include "capture/scan/histogram.h"
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
+#include "core/rig/calibration.h"
 #include "report/downsampler.h"
 #include "report/preview.h"
 
@@ -69,8 +71,8 @@ Image<float> reduced(Image<float> picture) {
   return small;
 }
 
-/// Gains that make the picture grey on average; those of a frame without light would only colour its noise.
-void balance_to_grey(Image<float>& picture) {
+/// What makes the picture grey on average; of a frame without light that would only colour its noise.
+std::array<float, 3> grey_gains(const Image<float>& picture) {
   std::array<double, 3> mean = {};
   for (int c = 0; c < 3; ++c) {
     for (int y = 0; y < picture.height(); ++y) {
@@ -79,9 +81,16 @@ void balance_to_grey(Image<float>& picture) {
     }
     mean[static_cast<std::size_t>(c)] /= static_cast<double>(picture.size().pixels());
   }
+  std::array<float, 3> gains = {1, 1, 1};
+  for (std::size_t c = 0; c < 3 && mean[1] > 1e-3; ++c) {
+    gains[c] = static_cast<float>(std::clamp(mean[1] / std::max(mean[c], 1e-6), 0.5, 4.0));
+  }
+  return gains;
+}
+
+void encode(Image<float>& picture, const std::array<float, 3>& gains) {
   for (int c = 0; c < 3; ++c) {
-    const double ratio = mean[1] > 1e-3 ? mean[1] / std::max(mean[static_cast<std::size_t>(c)], 1e-6) : 1;
-    const auto gain = static_cast<float>(std::clamp(ratio, 0.5, 4.0));
+    const float gain = gains[static_cast<std::size_t>(c)];
     for (int y = 0; y < picture.height(); ++y) {
       for (int x = 0; x < picture.width(); ++x) {
         picture(x, y, c) = report::srgb_from_linear(gain * picture(x, y, c));
@@ -92,6 +101,26 @@ void balance_to_grey(Image<float>& picture) {
 
 }  // namespace
 
+std::optional<std::array<float, 3>> white_gains(const std::filesystem::path& frame,
+                                                const std::filesystem::path& calibration) {
+  for (const auto& folder : {frame.parent_path().parent_path() / "calibration", calibration}) {
+    const Result<Calibration> known = read_calibration(folder);
+    if (!known || !known->lights) continue;
+    std::array<double, 3> sum = {};
+    const auto add = [&](const std::array<double, 3>& rgb) {
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += rgb[c];
+    };
+    if (const auto* near = std::get_if<NearLights>(&*known->lights)) {
+      for (const NearLight& led : near->leds) add(led.flux_rgb);
+    } else {
+      for (const DistantLight& light : std::get<DistantLights>(*known->lights).lights)
+        add(light.irradiance_rgb);
+    }
+    return std::array{static_cast<float>(sum[1] / sum[0]), 1.0F, static_cast<float>(sum[1] / sum[2])};
+  }
+  return std::nullopt;
+}
+
 Json to_json(const HistogramRgb& histogram) {
   constexpr std::array<const char*, 3> kChannels = {"red", "green", "blue"};
   Json json = Json::object();
@@ -101,8 +130,8 @@ Json to_json(const HistogramRgb& histogram) {
   return json;
 }
 
-FramePictures::FramePictures(std::filesystem::path folder, std::size_t most)
-    : folder_(std::move(folder)), most_(most) {
+FramePictures::FramePictures(std::filesystem::path folder, std::size_t most, CalibrationFolder calibration)
+    : folder_(std::move(folder)), most_(most), calibration_(std::move(calibration)) {
   prune(folder_, most_);
   thread_ = std::thread([this] { run(); });
 }
@@ -185,7 +214,8 @@ Result<void> FramePictures::make_files(const FrameFile& frame) try {
   const Result<RawFrame> raw = capture::decode_raw(frame.file);
   if (!raw) return raw.error();
   Image<float> picture = reduced(capture::half_size_picture(*raw, Response{}));
-  balance_to_grey(picture);
+  const std::optional<std::array<float, 3>> white = white_gains(frame.file, calibration_());
+  encode(picture, white ? *white : grey_gains(picture));
   if (Result<void> made = make_writable_folder(folder_); !made) return made;
   const std::vector<View<const float>> planes = {picture.plane(0), picture.plane(1), picture.plane(2)};
   WriteOptions options;

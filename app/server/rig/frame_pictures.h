@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -28,20 +29,30 @@ struct FrameFile {
   std::optional<HistogramRgb> histogram = {};  ///< where it has been counted already
 };
 
+/// By channel, what makes white paper grey that is lit by the LEDs of a calibration: that of the frame's
+/// session, else this folder's. None where neither has lights.
+std::optional<std::array<float, 3>> white_gains(const std::filesystem::path& frame,
+                                                const std::filesystem::path& calibration);
+
 /// What of frames is shown to people: a thumbnail and the histogram, kept in a folder under the frame's
 /// digest, so that each frame is decoded once however often its session is looked at, moved or renamed. The
 /// folder may be emptied at any time. Safe from any thread; one frame is decoded at a time.
 class FramePictures {
  public:
-  /// Keeps the newest `most` frames in the folder, and at times a tenth more.
-  explicit FramePictures(std::filesystem::path folder, std::size_t most = 2000);
+  using CalibrationFolder = std::function<std::filesystem::path()>;
+
+  /// Keeps the newest `most` frames in the folder, and at times a tenth more. `calibration`: of frames that
+  /// are no session's.
+  explicit FramePictures(
+      std::filesystem::path folder, std::size_t most = 2000,
+      CalibrationFolder calibration = [] { return std::filesystem::path(); });
   ~FramePictures();
 
   /// Has it made soon, if it is not there.
   void prepare(FrameFile frame);
-  /// The bytes of a PNG of 320 pixels at most: linear counts without the camera's white balance but grey on
-  /// average, sRGB-encoded. Made now if it is not there. Errors: those of decode_raw(), kTryAgain where too
-  /// many wait for theirs, kInterrupted.
+  /// The bytes of a PNG of 320 pixels at most: linear counts times white_gains(), or grey on average,
+  /// sRGB-encoded. Made now if it is not there. Errors: those of decode_raw(), kTryAgain where too many wait
+  /// for theirs, kInterrupted.
   Result<std::string> thumbnail(const FrameFile& frame);
   /// As to_json() above. The same errors.
   Result<Json> histogram(const FrameFile& frame);
@@ -58,6 +69,7 @@ class FramePictures {
 
   std::filesystem::path folder_;
   std::size_t most_;
+  CalibrationFolder calibration_;
   std::size_t made_ = 0;  ///< since the folder was pruned
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -8,6 +8,17 @@
 #include "app/server/api/routes/tile_query.h"
 
 namespace weft::app {
+namespace {
+
+void balance(Image<float>& planes, const std::optional<std::array<float, 3>>& gains) {
+  for (int c = 0; gains && c < 3; ++c) {
+    for (int y = 0; y < planes.height(); ++y) {
+      for (int x = 0; x < planes.width(); ++x) planes(x, y, c) *= (*gains)[static_cast<std::size_t>(c)];
+    }
+  }
+}
+
+}  // namespace
 
 Result<Reply> tile_of_frame(const RigParts& parts, const FrameFile& frame, const std::string& level,
                             const std::string& tile, const Call& call) {
@@ -20,8 +31,10 @@ Result<Reply> tile_of_frame(const RigParts& parts, const FrameFile& frame, const
   const int number = level_of(level, (*pyramid)->levels());
   const std::optional<Rect> part = (*pyramid)->tile(number, name->column, name->row);
   if (!part) return no_such_tile(tile, "it is beyond the frame");
-  const Result<Image<float>> planes = (*pyramid)->read(number, *part);
+  Result<Image<float>> planes = (*pyramid)->read(number, *part);
   if (!planes) return planes.error();
+  if (name->form != TileName::Form::kRaw)
+    balance(*planes, white_gains(frame.file, capture::calibration_now(parts.rig)));
   Result<std::string> bytes = name->form == TileName::Form::kRaw
                                   ? raw_tile(LayerKind::kColor, *planes)
                                   : picture_tile(LayerKind::kColor, *planes, *look, name->picture());

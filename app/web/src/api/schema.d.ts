@@ -1402,7 +1402,7 @@ export interface paths {
             };
             requestBody?: never;
             responses: {
-                /** @description As of a solve's colours, without white balance */
+                /** @description As of a solve's colours; without white balance where they are raw */
                 200: {
                     headers: {
                         [name: string]: unknown;
@@ -1843,7 +1843,7 @@ export interface paths {
             };
             requestBody?: never;
             responses: {
-                /** @description As of a solve's colours, without white balance */
+                /** @description As of a solve's colours; without white balance where they are raw */
                 200: {
                     headers: {
                         [name: string]: unknown;
