@@ -15,7 +15,6 @@
 #include "core/describe/field_json.h"
 #include "core/image_io/image_io.h"
 #include "core/rig/calibration.h"
-#include "core/rig/cloth_kinds.h"
 #include "core/rig/session.h"
 #include "core/solve/solve.h"
 #include "material/opacity/fill.h"
@@ -41,14 +40,6 @@ constexpr int kVersion = 3;  // raised whenever the bytes of a map may change
 // What a session holds, as its session.json tells by the digests of its frames; empty where none is named.
 Result<std::string> digest_of(const fs::path& session) {
   return session.empty() ? Result<std::string>(std::string()) : sha256_of_file(session / "session.json");
-}
-
-// What people said of it; empty where they did not.
-std::string cloth_kind_of(const Session& session) {
-  const auto metadata = session.document.find("metadata");
-  const bool is_said = metadata != session.document.end() && metadata->is_object();
-  const std::string kind = is_said ? text_at(*metadata, "kind") : "";
-  return std::ranges::find(kClothKinds, kind) == kClothKinds.end() ? "" : kind;
 }
 
 // Room that maps take at most, bytes a pixel.

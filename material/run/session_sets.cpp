@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/rig/cloth_kinds.h"
+
 namespace weft::material {
 namespace {
 
@@ -16,17 +18,33 @@ bool has_maps(const MapSetFacts& facts, const std::vector<std::string>& wanted) 
   });
 }
 
-SessionSet set_of(const solve::SessionSolves& solves, Product product, MapSetFacts facts) {
+// Whether a map stands on the kind of the cloth, which nobody had said.
+bool lacks_kind(const MapSetFacts& facts) {
+  const auto roughness = std::ranges::find(facts.maps, "roughness", &MapFacts::name);
+  return facts.derive.cloth.empty() && roughness != facts.maps.end() &&
+         roughness->source == MapSource::kAssumed;
+}
+
+SessionSet set_of(const solve::SessionSolves& solves, const std::string& kind, Product product,
+                  MapSetFacts facts) {
   const solve::SourceFacts& source = facts.source;
   const solve::ChoosableSolve* const found = solves.find(source.solve);
   SessionSet set = {std::move(product), {}, {}, false, why_stale(solves, source.solve)};
   set.level = found != nullptr ? found->level : source.level;
+  if (!kind.empty() && lacks_kind(facts))
+    set.stale.push_back(fmt::format("the cloth is {}, which nobody had said", kind));
   set.is_draft = found != nullptr ? found->is_preview() : source.is_draft;
   set.facts = std::move(facts);
   return set;
 }
 
 }  // namespace
+
+std::string cloth_kind_of(const Session& session) {
+  const auto metadata = session.document.find("metadata");
+  const std::string kind = metadata == session.document.end() ? "" : text_at(*metadata, "kind");
+  return std::ranges::find(kClothKinds, kind) == kClothKinds.end() ? "" : kind;
+}
 
 std::string text_at(const Json& document, const char* key) {
   const Json value = document.is_object() ? document.value(key, Json()) : Json();
@@ -39,10 +57,12 @@ bool flag_at(const Json& document, const char* key) {
 
 std::vector<SessionSet> sets_of(const solve::SessionSolves& solves, bool of_previews) {
   std::vector<SessionSet> sets;
+  const Result<Session> session = read_session(solves.session);
+  const std::string kind = session ? cloth_kind_of(*session) : "";
   for (Product& product : list_products(kMapsProduct, solves.session / "maps")) {
     Result<MapSetFacts> facts = read_map_set(product.folder);
     if (facts && (of_previews || !facts->is_preview))
-      sets.push_back(set_of(solves, std::move(product), std::move(*facts)));
+      sets.push_back(set_of(solves, kind, std::move(product), std::move(*facts)));
   }
   return sets;
 }

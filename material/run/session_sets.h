@@ -20,6 +20,9 @@ namespace weft::material {
 std::string text_at(const Json& document, const char* key);
 bool flag_at(const Json& document, const char* key);
 
+/// Which of kClothKinds people said that the cloth is; empty where they did not.
+std::string cloth_kind_of(const Session& session);
+
 /// A set of maps with what is known of its solve.
 struct SessionSet {
   Product product;

@@ -76,17 +76,19 @@ function Found({viewer, map, view, canvas}: {viewer: Viewer; map: Maps['solve'];
   const from = {x: map.width / 4 - at.x, y: map.height / 2 - at.y};
   const say = (key: string, decimals = 2) => numberIn(found, key)?.toFixed(decimals);
   return (
-    <svg width={viewer.sight.value.divider! * canvas.width} height={canvas.height}>
-      <g transform={`translate(${x} ${y}) scale(${view.zoom})`}>
-        <polygon points={at.corners.join(' ')} />
-        {found && <path d={`M${from.x} ${from.y}l${ax} ${ay}l${bx} ${by}l${-ax} ${-ay}Z`} />}
-      </g>
+    <>
+      <svg width={viewer.sight.value.divider! * canvas.width} height={canvas.height}>
+        <g transform={`translate(${x} ${y}) scale(${view.zoom})`}>
+          <polygon points={at.corners.join(' ')} />
+          {found && <path d={`M${from.x} ${from.y}l${ax} ${ay}l${bx} ${by}l${-ax} ${-ay}Z`} />}
+        </g>
+      </svg>
       {found && (
         <text x={x + from.x * view.zoom} y={y + from.y * view.zoom + 20}>
           {say('across_mm')}{found['up_mm'] ? ` × ${say('up_mm')} mm, ${say('angle_deg', 1)}°` : ' mm'}
         </text>
       )}
-    </svg>
+    </>
   );
 }
 
