@@ -47,8 +47,10 @@ std::vector<std::string> all_maps() {
   return names;
 }
 
-void scan_and_solve(const std::string& scene, Size size, const fs::path& session) {
-  simulate(scene_named(scene, size), session);
+void scan_and_solve(const std::string& name, Size size, const fs::path& session) {
+  simulator::Scene scene = scene_named(name, size);
+  scene.effects.interreflection = false;  // it takes seconds, and changes no repeat
+  simulate(scene, session);
   solve::SolveOptions options;
   options.method = "fast";
   options.previews = false;
