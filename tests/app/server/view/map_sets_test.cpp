@@ -88,6 +88,21 @@ TEST_F(MapSets, AreSeenAsASolveIs) {
   }
 }
 
+TEST_F(MapSets, AreSeenBesideTheRectifiedMapsThatTheyWereMadeOf) {
+  const std::string rectified = "sessions/asked/maps/" + set_["rectified"].get<std::string>();
+  const Json before = get(rectified).json(), after = get(here()).json();
+  for (const char* same : {"width", "height", "mm_per_pixel", "method", "albedo_scale"})
+    EXPECT_EQ(before[same], after[same]) << same;
+  EXPECT_EQ(before["set"]["schema"], "weft.rectified/1");
+  EXPECT_EQ(after["set"]["place"]["centre_px"],
+            Json({0.5 * after["width"].get<int>(), 0.5 * after["height"].get<int>()}));
+  const std::string pixel = "/pixel?x=10&y=20";
+  EXPECT_EQ(get(rectified + pixel).json()["maps"]["albedo"], get(here() + pixel).json()["maps"]["albedo"])
+      << "no step changed them";
+  EXPECT_EQ(get(rectified + "/tiles/relit/top/0_0.jpg").status, 200);
+  EXPECT_EQ(get(rectified + "/tiles/height/0/0_0.raw").status, 404);
+}
+
 TEST_F(MapSets, AreMeasuredInMillimetresOfTheirGrid) {
   const Json line = get(here() + "/line?x0=10&y0=20&x1=40&y1=60").json();
   EXPECT_NEAR(line["mm"].get<double>(), 50 * kGrid_mm, 1e-12);
