@@ -165,12 +165,13 @@ struct Pixel {
 class Scan {
  public:
   Scan(const ForeseenRig& rig, const ForeseenCloth& cloth, const std::vector<ClothSite>& sites,
-       std::vector<const LitSites*> lights, bool has_polarisers)
+       std::vector<const LitSites*> lights, const LightSet& set)
       : rig_(rig),
         cloth_(cloth),
         sites_(sites),
         lights_(std::move(lights)),
-        films_(films(has_polarisers)),
+        films_(films(set.has_polarisers)),
+        bracket_(set.bracket.value_or(0)),
         fitted_(parameters_of(cloth.lobe.family)),
         shared_(kBeforeLeds + kErrors * static_cast<Eigen::Index>(lights_.size())) {
     fitted_[static_cast<std::size_t>(kBendAt)] = true;
@@ -249,11 +250,17 @@ class Scan {
     electrons_ = brightest > 0 ? kMetered * rig_.full_well_electrons / brightest : 0;
   }
 
+  // The variance of a reading whose unit is so many electrons.
+  double noise(double x, double a_unit) const {
+    return (x * a_unit + rig_.read_noise_electrons * rig_.read_noise_electrons) / (a_unit * a_unit);
+  }
+
   double weight(double x, double strength) const {
     const double a_unit = electrons_ * strength;
-    const double noise =
-        (x * a_unit + rig_.read_noise_electrons * rig_.read_noise_electrons) / (a_unit * a_unit);
-    return 1 / (noise + std::pow(kLobeModelShare * std::max(x, kLeastModelled), 2));
+    double told = 1 / noise(x, a_unit);
+    if (bracket_ > 0 && bracket_ * a_unit * x <= rig_.full_well_electrons)
+      told += 1 / noise(x, bracket_ * a_unit);
+    return 1 / (1 / told + std::pow(kLobeModelShare * std::max(x, kLeastModelled), 2));
   }
 
   // Below it a reading is taken for a cast shadow, as by a solve.
@@ -368,6 +375,7 @@ class Scan {
   const std::vector<ClothSite>& sites_;
   std::vector<const LitSites*> lights_;
   const std::vector<Film>& films_;
+  double bracket_;
   LobeParameters fitted_;
   Eigen::Index shared_;
   double electrons_ = 0;  // of a reading of 1 under a light of strength 1
@@ -406,7 +414,7 @@ struct LightPlan::Parts {
     std::vector<const LitSites*> lights;
     for (const std::size_t k : set.leds) lights.push_back(&lit[k]);
     if (added) lights.push_back(added);
-    return Scan(rig, cloth, sites, lights, set.has_polarisers).sigma(covariance_of(set), set.errors);
+    return Scan(rig, cloth, sites, lights, set).sigma(covariance_of(set), set.errors);
   }
 
   Eigen::MatrixXd covariance_of(const LightSet& set) const {
@@ -427,7 +435,10 @@ struct LightPlan::Parts {
       covariance.bottomRightCorner<kErrors, kErrors>() =
           Eigen::Map<const Eigen::Matrix<double, kErrors, kErrors>>(typical.data());
     }
-    return covariance;
+    Eigen::VectorXd faded = Eigen::VectorXd::Zero(kErrors * lights);
+    for (Eigen::Index i = 1; i < lights; ++i)
+      faded(kErrors * i) = set.fade * static_cast<double>(i) / static_cast<double>(lights - 1);
+    return covariance + faded * faded.transpose();
   }
 
   LitSites lit_by(const NearLight& led) const { return LightedSites(rig, cloth, led).over(sites); }

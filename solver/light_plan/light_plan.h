@@ -43,6 +43,9 @@ struct LightSet {
   std::optional<NearLight> added = {};  ///< one more
   RigErrors errors = RigErrors::kTaken;
   bool has_polarisers = false;  ///< each LED twice, with films crossed and parallel
+  /// Each reading once more at so many times the exposure, where that does not fill the sensor.
+  std::optional<double> bracket = {};
+  double fade = 0;  ///< share by which the LEDs may fade from the first to the last, unseen
 };
 
 /// Standard deviations. Infinite: the photographs do not tell it. With RigErrors::kFitted no unbiased
