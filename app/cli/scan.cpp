@@ -2,6 +2,7 @@
 #include "capture/scan/scan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -19,6 +20,7 @@
 #include "app/server/api/bodies/scan_body.h"
 #include "app/server/http/error_reply.h"
 #include "app/server/rig/rig_lock.h"
+#include "calibration/guide/scan_price.h"
 #include "calibration/run/rig_look.h"
 #include "capture/rig.h"
 #include "core/base/files.h"
@@ -58,6 +60,7 @@ Result<void> check_folder(const capture::Rig& rig, const fs::path& output) {
 Json body_of(ScanWish wish) {
   const fs::path name = wish.session.filename();
   wish.session = name.extension() == ".weft" ? name.stem() : name;
+  wish.only_explains = false;
   return changes_of(wish);
 }
 
@@ -159,6 +162,44 @@ Result<int> name_only(const capture::Rig& rig, const std::optional<std::string>&
   } else {
     print(session.string());
   }
+  return kDone;
+}
+
+void print_offers(const calibration::ScanPrices& offers) {
+  print("  degrees   light  cloth        of  shots  seconds       MB  shots to buy");
+  const auto cell = [](const std::optional<double>& value, double factor) {
+    return value ? fmt::format("{:.3g}", factor * *value) : std::string("-");
+  };
+  for (const calibration::ShotsPrice& row : offers.rows) {
+    print(fmt::format("{:>9} {:>7} {:>6} {:>9} {:>6} {:>8} {:>8}  {}{}{}", cell(row.predicted_deg, 1),
+                      cell(row.light_deg, 1), row.predicted_deg ? fmt::format("{:.3g}", row.cloth_deg) : "-",
+                      row.predicted_deg ? share_in_words(row.solved) : "-", row.shots, cell(row.seconds, 1),
+                      cell(row.bytes, 1e-6), row.what, row.is_asked ? "  <- asked for" : "",
+                      row.is_chosen ? "  <- to buy" : ""));
+    if (row.is_chosen && !row.is_asked)
+      print(fmt::format("{:60}  --leds {}{}{}", "", fmt::join(row.list.leds, ","),
+                        row.list.repeat ? "" : " --no-repeat",
+                        row.list.bracket ? fmt::format(" --bracket {:g}", *row.list.bracket) : ""));
+  }
+  for (const std::string& each : offers.notes) print(each);
+}
+
+/// Lists what may be bought; nothing is photographed.
+Result<int> explain_scan(const capture::Rig& rig, const std::optional<std::string>& owner, const Json& body,
+                         const CommonArguments& common) {
+  const Result<ReachedRig> scanner = reach_rig(rig, owner);
+  if (!scanner) return scanner.error();
+  const Result<Json> told = scanner->client.post("/api/v1/scan/price", body);
+  if (!told) return told.error();
+  if (common.json) {
+    print_json(*told);
+    return kDone;
+  }
+  JsonReader reader(*told, "scan/price");
+  calibration::ScanPrices offers;
+  describe(reader, offers);
+  if (Result<void> ok = reader.status(); !ok) return std::move(ok).error();
+  print_offers(offers);
   return kDone;
 }
 
@@ -285,6 +326,7 @@ Result<int> scan(ScanArguments arguments, const CommonArguments& common) {
   } else if (!output.empty()) {
     rig->scan.sessions = fs::absolute(output).parent_path();
   }
+  if (arguments.wish.only_explains) return explain_scan(*rig, *owner, body, common);
   if (arguments.wish.dry_run) return name_only(*rig, *owner, body, common);
   Result<Json> ended = photograph(*rig, *owner, body, call, common);
   if (!ended) return std::move(ended).error();

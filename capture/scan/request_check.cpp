@@ -47,7 +47,7 @@ Result<ShotList> checked_shots(const ScanRequest& request, int leds_of_board, bo
   const auto refuse = [](std::string what, std::string why, std::string remedy) {
     return Error{ErrorKind::kUsage, std::move(what), "scan", std::move(why), std::move(remedy)};
   };
-  ShotList list = {request.leds, request.repeat, request.bracket, request.polariser.states, request.below};
+  ShotList list = asked_shots(request);
   if (!has_more_outputs && (request.below || request.polariser.is_turned)) {
     return Error{ErrorKind::kBadData,
                  request.below ? "the LED board has no output for a light below"

@@ -22,6 +22,10 @@ int ShotList::count() const {
   return 1 + states * lit + (repeat ? 2 : 0) + (bracket ? lit : 0) + (below ? 1 : 0);
 }
 
+ShotList asked_shots(const ScanRequest& request) {
+  return {request.leds, request.repeat, request.bracket, request.polariser.states, request.below};
+}
+
 Json to_json(const ShotList& list) {
   Json json = {{"leds", list.leds}, {"repeat", list.repeat}};
   if (list.bracket) json["bracket"] = *list.bracket;

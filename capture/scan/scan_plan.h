@@ -33,6 +33,7 @@ struct ShotList {
   int count() const;
 };
 Json to_json(const ShotList& list);
+ShotList asked_shots(const ScanRequest& request);
 
 /// How long the shots are that are not exposed as the lit ones.
 struct OtherTimes {

@@ -40,7 +40,9 @@ Json error_schema() {
 
 /// Components of OpenAPI: documents of replies that describe their fields.
 Json reply_schemas() {
-  return {{"Error", error_schema()}, {"Job", schema_of<JobStatus>(kWritten)}};
+  return {{"Error", error_schema()},
+          {"Job", schema_of<JobStatus>(kWritten)},
+          {"ScanPrices", schema_of<calibration::ScanPrices>(kWritten)}};
 }
 
 /// Each with its part of the description; calls are tagged with its name.

@@ -331,7 +331,6 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
     log_.add(cancelled ? "scan_cancelled" : "scan_failed", outcome.error().message(), std::move(record));
   }
   const std::lock_guard lock(mutex_);
-  if (outcome && is_scan && pace_.shot_s()) pace_s_ = pace_.shot_s();
   if (outcome) {
     status_.scan.phase = capture::ScanPhase::kComplete;
     status_.warnings = outcome->warnings;
@@ -382,11 +381,6 @@ RigStatus RigKeeper::status_locked() const {
   status.controls = controls_();
   status.place = place_();
   return status;
-}
-
-std::optional<double> RigKeeper::pace_s() const {
-  const std::lock_guard lock(mutex_);
-  return pace_s_;
 }
 
 RigStatus RigKeeper::status() const {

@@ -74,8 +74,6 @@ class RigKeeper {
   Result<void> cancel();
 
   RigStatus status() const;
-  /// Seconds a shot of the last scan that came to its end; none: nothing was scanned yet.
-  std::optional<double> pace_s() const;
   /// The name of the session being scanned; empty: none.
   std::string session() const;
 
@@ -120,7 +118,6 @@ class RigKeeper {
   std::optional<capture::ScanRequest> request_;  ///< of the last scan; none: something else was done
   Screens::Clock::time_point begun_;             ///< when the scan that is announced began; zero: none is
   ScanPace pace_;
-  std::optional<double> pace_s_;  ///< of the last scan that came to its end
   std::atomic<bool> pause_ = false;
   std::string logged_;  ///< the last trouble that log_once() wrote; the scan's own
   std::jthread scan_;

@@ -128,6 +128,8 @@ test('the bill of a scan follows what is asked of it, and the scan takes what wa
   assert.equal(await bill.getByText('0.0013° with').count(), 0);
   await page.getByLabel('Bracket').fill('0.25');
   await bill.getByText(/^21 shots/).waitFor();
+  await page.getByRole('button', {name: 'Other shots'}).click();
+  await page.getByRole('list', {name: 'Other shots'}).getByText(/^10 LEDs, repeat: the one to buy$/).waitFor();
   assert.deepEqual(await violations(page), []);
   await picture(page, 'desk-bill');
 

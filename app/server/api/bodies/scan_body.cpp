@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -61,6 +62,31 @@ void describe_shots(Fields& fields, ScanWish& wish) {
                wish.repeat);
 }
 
+/// Which shots are worth taking, and what that is reckoned by.
+void describe_price(Fields& fields, ScanWish& wish) {
+  fields.value({.name = "explain",
+                .says = "Photograph nothing: list shots that may be bought, their seconds and bytes by the "
+                        "rig's last scan, and the degrees and share of the cloth that they tell",
+                .said = Said::kAtThisMachine},
+               wish.only_explains);
+  fields.value({.name = "like",
+                .says = "What the cloth is taken to be like by explain, to and within",
+                .words = calibration::planned_cloth_names()},
+               wish.like);
+  fields.value({.name = "to_deg",
+                .says = "Choose LEDs, repeat, bracket and films: the cheapest that tell normals to so many "
+                        "degrees",
+                .range = kAboveZero},
+               wish.aims.to_deg);
+  fields.value({.name = "within_s",
+                .says = "Choose them: the best that take so many seconds by the rig's last scan",
+                .range = kAboveZero},
+               wish.aims.within_s);
+  for (const char* aim : {"to_deg", "within_s"}) {
+    for (const char* chosen : {"repeat", "bracket", "polariser"}) fields.exclude(aim, chosen);
+  }
+}
+
 /// As `request` has it.
 ScanWish wish_of(const capture::ScanRequest& request, int leds) {
   ScanWish wish;
@@ -69,6 +95,10 @@ ScanWish wish_of(const capture::ScanRequest& request, int leds) {
   wish.repeat = request.repeat;
   wish.below = request.below;
   return wish;
+}
+
+Result<ScanWish> read_wish(const Json& body, int leds, const capture::ScanRequest& otherwise) {
+  return read_body(body, {"the request cannot be used", "a scan", "POST scan"}, wish_of(otherwise, leds));
 }
 
 void take_shots(const ScanWish& wish, capture::ScanRequest& request) {
@@ -136,6 +166,7 @@ void describe(Fields& fields, ScanWish& wish) {
                 .said = Said::kToServer,
                 .is_sentence = true},
                wish.request_id);
+  describe_price(fields, wish);
   fields.value({"dry_run", "Only say which session would be made or gone on with"}, wish.dry_run);
 }
 
@@ -189,11 +220,17 @@ capture::ScanRequest request_of_session(const Session& session, const capture::R
   return request;
 }
 
+Result<ShotAims> read_shot_aims(const Json& body, int leds, const capture::ScanRequest& otherwise) {
+  const Result<ScanWish> wish = read_wish(body, leds, otherwise);
+  if (!wish) return wish.error();
+  const auto& cloths = calibration::planned_cloths();
+  return ShotAims{wish->aims, *std::ranges::find(cloths, wish->like, &calibration::NamedCloth::name)};
+}
+
 Result<capture::ScanRequest> read_scan_body(const Json& body, int leds,
                                             const capture::ScanRequest& otherwise) {
   if (const Result<std::string> name = session_in_body(body); !name) return name.error();
-  const Result<ScanWish> wish =
-      read_body(body, {"the request cannot be used", "a scan", "POST scan"}, wish_of(otherwise, leds));
+  const Result<ScanWish> wish = read_wish(body, leds, otherwise);
   if (!wish) return wish.error();
   capture::ScanRequest request = otherwise;
   if (!wish->fabric.empty()) request.fabric = wish->fabric;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calibration/guide/scan_price.h"
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
 #include "core/base/json_document.h"
@@ -41,6 +42,9 @@ struct ScanWish {
   std::vector<std::string> polariser;
   std::string accept_moved, request_id;
   bool dry_run = false;  ///< nothing is to begin: only say which session it would be
+  bool only_explains = false;
+  std::string like = "cotton";  ///< of calibration::planned_cloths()
+  calibration::ShotsWish aims;
   Has has;
 };
 void describe(Fields& fields, ScanWish& wish);
@@ -57,5 +61,12 @@ capture::ScanRequest request_of_session(const Session& session, const capture::R
 /// known is refused, with the nearest that is.
 Result<capture::ScanRequest> read_scan_body(const Json& body, int leds,
                                             const capture::ScanRequest& otherwise);
+
+/// What the same body says of choosing its shots.
+struct ShotAims {
+  calibration::ShotsWish wish;
+  calibration::NamedCloth cloth;
+};
+Result<ShotAims> read_shot_aims(const Json& body, int leds, const capture::ScanRequest& otherwise);
 
 }  // namespace weft::app

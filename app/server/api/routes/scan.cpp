@@ -9,9 +9,11 @@
 #include "app/server/api/api.h"
 #include "app/server/api/bodies/scan_body.h"
 #include "app/server/api/routes/scan_bill.h"
+#include "app/server/api/routes/scan_offers.h"
 #include "app/server/api/routes/session_choice.h"
 #include "calibration/run/last_check.h"
 #include "core/base/files.h"
+#include "core/describe/field_json.h"
 #include "core/rig/calibration.h"
 
 namespace weft::app {
@@ -54,7 +56,13 @@ Result<void> check_moved(capture::ScanRequest& request) {
 Result<SessionChoice> session_for(const RigParts& parts, const Json& body) {
   Result<SessionChoice> choice =
       choose_session(body, parts.rig, parts.library, std::chrono::system_clock::now());
-  if (!choice || choice->request.exposure.exposure_us == 0) return choice;
+  if (!choice) return choice;
+  const Result<ShotAims> aims = read_shot_aims(body, parts.rig.leds, choice->request);
+  if (!aims) return aims.error();
+  if (!choice->resumed && aims->wish.is_one()) {
+    if (Result<void> ok = take_chosen_shots(parts, *aims, choice->request); !ok) return std::move(ok).error();
+  }
+  if (choice->request.exposure.exposure_us == 0) return choice;
   const Result<double> settable = parts.attendance.settable_us(choice->request.exposure.exposure_us);
   return settable ? std::move(choice) : settable.error();
 }
@@ -64,9 +72,22 @@ Json told_before(const RigParts& parts, const SessionChoice& choice) {
   Json told = to_json(choice);
   if (choice.resumed) return told;
   told["bill"] = Json::array();
-  for (const BillLine& line : bill_of(choice.request, parts.keeper.pace_s()))
+  const std::optional<calibration::ShotCost> cost = last_shot_cost(parts);
+  for (const BillLine& line : bill_of(choice.request, cost ? std::optional(cost->shot_s) : std::nullopt))
     told["bill"].push_back(json_of(line));
   return told;
+}
+
+Result<Reply> offer_shots(const RigParts& parts, const Call& call) {
+  const Result<Json> body = parse_body(call.body);
+  if (!body) return body.error();
+  const capture::ScanRequest otherwise = request_of_rig(parts.rig);
+  const Result<capture::ScanRequest> request = read_scan_body(*body, parts.rig.leds, otherwise);
+  if (!request) return request.error();
+  const Result<ShotAims> aims = read_shot_aims(*body, parts.rig.leds, otherwise);
+  if (!aims) return aims.error();
+  const Result<calibration::ScanPrices> offers = offers_for(parts, *request, *aims);
+  return offers ? json_reply(object_of(*offers)) : Result<Reply>(offers.error());
 }
 
 Result<Json> begin_scan(const RigParts& parts, const Json& body, const std::string& by) {
@@ -113,6 +134,7 @@ Result<Reply> after(const RigParts& parts, const Call& call, const Step& step) {
 
 Resource scan_resource(const RigParts& parts) {
   return {{{"POST", "/api/v1/scan", [&parts](const Call& call) { return start_scan(parts, call); }},
+           {"POST", "/api/v1/scan/price", [&parts](const Call& call) { return offer_shots(parts, call); }},
            {"POST", "/api/v1/scan/pause",
             [&parts](const Call& call) {
               return after(parts, call, [&](const std::string&) { return parts.keeper.pause(); });

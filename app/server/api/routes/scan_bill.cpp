@@ -34,8 +34,7 @@ BillLine purpose_of(const std::string& what, std::optional<double> bracket) {
 }  // namespace
 
 std::vector<BillLine> bill_of(const capture::ScanRequest& request, std::optional<double> pace_s) {
-  const capture::ShotList list = {request.leds, request.repeat, request.bracket, request.polariser.states,
-                                  request.below};
+  const capture::ShotList list = capture::asked_shots(request);
   std::map<std::string, int> shots;
   for (const capture::DueShot& shot : capture::plan_shots(list, {}, {})) ++shots[kind_of(shot, list)];
   std::vector<BillLine> bill;

@@ -76,9 +76,7 @@ Result<SessionChoice> resumed(std::string name, const Session& session, const Js
   SessionChoice choice = {std::move(name), std::move(*request), true};
   choice.request.session = session.folder;
   choice.frames = static_cast<int>(session.shots.size());
-  const capture::ScanRequest& asked = choice.request;
-  choice.frames_planned =
-      capture::ShotList{asked.leds, asked.repeat, asked.bracket, asked.polariser.states, asked.below}.count();
+  choice.frames_planned = capture::asked_shots(choice.request).count();
   return choice;
 }
 

@@ -594,7 +594,7 @@ export interface paths {
                 query?: never;
                 header?: never;
                 path: {
-                    target: "board" | "sheet" | "tags" | "chart" | "ball";
+                    target: "board" | "sheet" | "tags";
                 };
                 cookie?: never;
             };
@@ -1255,7 +1255,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** What the finder's next picture shows of the table's tags and of the board or sheet that the set that is worked on asks for */
+        /** What the finder's next picture shows of the table's tags and of the board of the set that is worked on */
         get: {
             parameters: {
                 query?: {
@@ -1286,10 +1286,6 @@ export interface paths {
                             board: components["schemas"]["FramedShape"] | null;
                             /** @description Of the board, that were found */
                             corners: number;
-                            /** @description Around the sheet */
-                            sheet: components["schemas"]["FramedShape"] | null;
-                            /** @description To the person: what is seen, and how a sheet lies otherwise than asked */
-                            says: string;
                         };
                     };
                 };
@@ -1402,7 +1398,7 @@ export interface paths {
             };
             requestBody?: never;
             responses: {
-                /** @description As of a solve's colours; without white balance where they are raw */
+                /** @description As of a solve's colours, without white balance */
                 200: {
                     headers: {
                         [name: string]: unknown;
@@ -1843,7 +1839,7 @@ export interface paths {
             };
             requestBody?: never;
             responses: {
-                /** @description As of a solve's colours; without white balance where they are raw */
+                /** @description As of a solve's colours, without white balance */
                 200: {
                     headers: {
                         [name: string]: unknown;
@@ -3258,7 +3254,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
+                    /** @description Id of the set of maps */
                     id: string;
                 };
                 cookie?: never;
@@ -3322,7 +3318,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
+                    /** @description Id of the set of maps */
                     id: string;
                     /** @description As the facts of a step and the checks name it: straighten_2.png */
                     file: string;
@@ -3392,7 +3388,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
+                    /** @description Id of the set of maps */
                     id: string;
                     /** @description Name of a layer; relit, the cloth under a lamp; difference, degrees between these normals and those of another solve; albedo_difference, percent of the albedo of another solve */
                     layer: string;
@@ -3449,70 +3445,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/sessions/{name}/maps/{id}/swatch.jpg": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /** The cloth as the library shows it: a square without tags, at most 60 mm and 320 pixels, lit from the upper left */
-        get: {
-            parameters: {
-                query?: never;
-                header?: never;
-                path: {
-                    /** @description Session, without .weft */
-                    name: string;
-                    /** @description Id of the set of maps */
-                    id: string;
-                };
-                cookie?: never;
-            };
-            requestBody?: never;
-            responses: {
-                /** @description As it is */
-                200: {
-                    headers: {
-                        [name: string]: unknown;
-                    };
-                    content: {
-                        "image/jpeg": string;
-                    };
-                };
-                400: components["responses"]["Unreadable"];
-                401: components["responses"]["NoToken"];
-                403: components["responses"]["ForeignOrigin"];
-                404: components["responses"]["NotThere"];
-                /** @description Too much is asked for at once, or memory is short */
-                409: {
-                    headers: {
-                        [name: string]: unknown;
-                    };
-                    content: {
-                        "application/json": components["schemas"]["ErrorDocument"];
-                    };
-                };
-                421: components["responses"]["ForeignHost"];
-                /** @description The file is damaged */
-                422: {
-                    headers: {
-                        [name: string]: unknown;
-                    };
-                    content: {
-                        "application/json": components["schemas"]["ErrorDocument"];
-                    };
-                };
-            };
-        };
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/v1/sessions/{name}/maps/{id}/pixel": {
         parameters: {
             query?: never;
@@ -3533,7 +3465,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
+                    /** @description Id of the set of maps */
                     id: string;
                 };
                 cookie?: never;
@@ -3606,7 +3538,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
+                    /** @description Id of the set of maps */
                     id: string;
                 };
                 cookie?: never;
@@ -3679,7 +3611,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
+                    /** @description Id of the set of maps */
                     id: string;
                 };
                 cookie?: never;
@@ -4103,70 +4035,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/v1/materials/{name}/builds/{id}/swatch.jpg": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /** The cloth as the library shows it: a square without tags, at most 60 mm and 320 pixels, lit from the upper left */
-        get: {
-            parameters: {
-                query?: never;
-                header?: never;
-                path: {
-                    /** @description Material, as GET materials has its key */
-                    name: string;
-                    /** @description Id of the build */
-                    id: string;
-                };
-                cookie?: never;
-            };
-            requestBody?: never;
-            responses: {
-                /** @description As it is */
-                200: {
-                    headers: {
-                        [name: string]: unknown;
-                    };
-                    content: {
-                        "image/jpeg": string;
-                    };
-                };
-                400: components["responses"]["Unreadable"];
-                401: components["responses"]["NoToken"];
-                403: components["responses"]["ForeignOrigin"];
-                404: components["responses"]["NotThere"];
-                /** @description Too much is asked for at once, or memory is short */
-                409: {
-                    headers: {
-                        [name: string]: unknown;
-                    };
-                    content: {
-                        "application/json": components["schemas"]["ErrorDocument"];
-                    };
-                };
-                421: components["responses"]["ForeignHost"];
-                /** @description The file is damaged */
-                422: {
-                    headers: {
-                        [name: string]: unknown;
-                    };
-                    content: {
-                        "application/json": components["schemas"]["ErrorDocument"];
-                    };
-                };
-            };
-        };
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/v1/materials/{name}/builds/{id}/pixel": {
         parameters: {
             query?: never;
@@ -4523,6 +4391,52 @@ export interface paths {
                         "application/json": components["schemas"]["ErrorDocument"];
                     };
                 };
+            };
+        };
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/scan/price": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** The shots that may be bought for a cloth: seconds, bytes, degrees. Nothing is photographed */
+        post: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path?: never;
+                cookie?: never;
+            };
+            requestBody: {
+                content: {
+                    "application/json": components["schemas"]["ScanRequest"];
+                };
+            };
+            responses: {
+                /** @description From the cheapest to the best */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ScanPrices"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                413: components["responses"]["TooLong"];
+                415: components["responses"]["NotJson"];
+                421: components["responses"]["ForeignHost"];
             };
         };
         delete?: never;
@@ -5383,70 +5297,6 @@ export interface paths {
                     content: {
                         "application/octet-stream": string;
                         "image/png": string;
-                        "image/jpeg": string;
-                    };
-                };
-                400: components["responses"]["Unreadable"];
-                401: components["responses"]["NoToken"];
-                403: components["responses"]["ForeignOrigin"];
-                404: components["responses"]["NotThere"];
-                /** @description Too much is asked for at once, or memory is short */
-                409: {
-                    headers: {
-                        [name: string]: unknown;
-                    };
-                    content: {
-                        "application/json": components["schemas"]["ErrorDocument"];
-                    };
-                };
-                421: components["responses"]["ForeignHost"];
-                /** @description The file is damaged */
-                422: {
-                    headers: {
-                        [name: string]: unknown;
-                    };
-                    content: {
-                        "application/json": components["schemas"]["ErrorDocument"];
-                    };
-                };
-            };
-        };
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/api/v1/sessions/{name}/solves/{solve}/swatch.jpg": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /** The cloth as the library shows it: a square without tags, at most 60 mm and 320 pixels, lit from the upper left */
-        get: {
-            parameters: {
-                query?: never;
-                header?: never;
-                path: {
-                    /** @description Session, without .weft */
-                    name: string;
-                    /** @description Id of the solve; truth for that of a simulated session */
-                    solve: string;
-                };
-                cookie?: never;
-            };
-            requestBody?: never;
-            responses: {
-                /** @description As it is */
-                200: {
-                    headers: {
-                        [name: string]: unknown;
-                    };
-                    content: {
                         "image/jpeg": string;
                     };
                 };
@@ -6387,8 +6237,6 @@ export interface components {
             construction?: string | null;
             /** @description front or back */
             side?: string | null;
-            /** @description cotton, wool, velvet, satin or dark-satin */
-            kind?: string | null;
             notes?: string | null;
             /** @description Indices of shots that no solve shall use */
             left_out?: number[] | null;
@@ -6583,8 +6431,6 @@ export interface components {
             can: ("scan" | "devices" | "light" | "test-shot" | "pause" | "resume" | "cancel")[];
             /** @description The table is photographed, or will be in page_dark_ms: screens that it sees are to be black */
             dark: boolean;
-            /** @description Until a scan that looks for its devices turns dark true, at the least; null: nothing is announced */
-            dark_in_s: number | null;
             /** @description LEDs that are lit for a person to see by */
             lit: number[];
             /** @description Who holds them; empty: nobody */
@@ -6741,8 +6587,6 @@ export interface components {
             composition: string;
             construction: string;
             side: string;
-            /** @description cotton, wool, velvet, satin or dark-satin; empty: nobody said */
-            kind: string;
             notes: string;
             weight_g_m2: number | null;
             thickness_mm: number | null;
@@ -6911,11 +6755,6 @@ export interface components {
             created?: string;
             /** @description Of its files */
             bytes?: number;
-            swatch: {
-                x: number;
-                y: number;
-                side: number;
-            };
             /** @description What an albedo of relative scale is multiplied by to be looked at */
             display_gain: number;
             /** @description Where the LEDs were, in the rig frame; empty where nobody knows */
@@ -7069,6 +6908,41 @@ export interface components {
             /** @description What its verb prints with --json */
             result: Record<string, unknown> | null;
         };
+        ScanPrices: {
+            /** @description What the cloth is taken to be like */
+            cloth: string;
+            /** @description From the cheapest; dearer ones that are no better are left out */
+            rows: {
+                /** @description In words */
+                what: string;
+                /** @description That are lit, numbered from 1 */
+                leds: number[];
+                /** @description The first LED and the dark shot once more */
+                repeat: boolean;
+                /** @description Each LED once more at so many times the exposure */
+                bracket: number | null;
+                /** @description Photographs */
+                shots: number;
+                /** @description By the rig's last scan */
+                seconds: number | null;
+                /** @description On the disk */
+                bytes: number | null;
+                /** @description Standard deviation of a normal by light, sensor and calibration, degrees */
+                light_deg: number | null;
+                /** @description Mean error of cloths by so many LEDs, as docs/measured/accuracy.md has it */
+                cloth_deg: number;
+                /** @description Of both */
+                predicted_deg: number | null;
+                /** @description Share of the cloth whose normals are told */
+                solved: number;
+                /** @description It is what the request has */
+                asked: boolean;
+                /** @description The one to buy */
+                chosen: boolean;
+            }[];
+            /** @description What the figures are of */
+            notes: string[];
+        };
         ScanRequest: {
             /** @description Session, NAME.weft, new or unfinished; default the one that the same request left unfinished in the last hour, else a new one by the rig file's session_name: its name */
             session?: string;
@@ -7119,11 +6993,21 @@ export interface components {
             /** @description The same as that of the last scan is that scan: a click that comes twice */
             request_id?: string;
             /**
+             * @description What the cloth is taken to be like by explain, to and within
+             * @default cotton
+             * @enum {string}
+             */
+            like?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
+            /** @description Choose LEDs, repeat, bracket and films: the cheapest that tell normals to so many degrees */
+            to_deg?: number;
+            /** @description Choose them: the best that take so many seconds by the rig's last scan */
+            within_s?: number;
+            /**
              * @description Only say which session would be made or gone on with
              * @default false
              */
             dry_run?: boolean;
-        };
+        } & (unknown & unknown & unknown & unknown & unknown & unknown);
         DevicesRequest: {
             /** @description true: for a person; false: close them */
             open: boolean;
@@ -7194,10 +7078,10 @@ export interface components {
         };
         TargetRequest: {
             /**
-             * @description What to print: board of the lens, sheet of the lights, tags of the table, chart for series of exposures, stand for a mirror ball
+             * @description What to print: board of the lens, sheet of the lights, tags of the table
              * @enum {string}
              */
-            target: "board" | "sheet" | "tags" | "chart" | "ball";
+            target: "board" | "sheet" | "tags";
             /**
              * @description To print on, landscape
              * @default a4
@@ -7208,11 +7092,6 @@ export interface components {
             field_width_mm?: number;
             /** @description The same; default by the rig's calibration, else 133 */
             field_height_mm?: number;
-            /**
-             * @description Diameter of the ball, mm
-             * @default 40
-             */
-            ball_mm?: number;
         };
         /** Solve */
         SolveJob: {
@@ -7375,23 +7254,13 @@ export interface components {
             /** @description Name of a preset of weft export --list; default those that were exported before */
             presets?: string[];
         };
-        /** Hard cases */
+        /** Torture scene */
         TortureJob: {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             kind: "torture";
-            /** @description A plain word: the same once more is the same job, and asks nothing new */
-            request_id?: string;
-        };
-        /** Sample cloth */
-        SampleJob: {
-            /**
-             * @description discriminator enum property added by openapi-typescript
-             * @enum {string}
-             */
-            kind: "sample";
             /** @description A plain word: the same once more is the same job, and asks nothing new */
             request_id?: string;
         };
@@ -7474,7 +7343,7 @@ export interface components {
              */
             recipe?: "flat" | "tile" | "detail";
             /**
-             * @description Of a large cloth the middle, at its full size; earlier previews go
+             * @description On a grid four times as coarse; earlier previews go
              * @default false
              */
             preview?: boolean;
@@ -7512,7 +7381,8 @@ export interface components {
              */
             directions?: number;
             /**
-             * @description Whose lobe is typed where the photographs tell none; default the session's kind
+             * @description Whose lobe is typed where the photographs tell none
+             * @default cotton
              * @enum {string}
              */
             cloth?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
@@ -7554,7 +7424,7 @@ export interface components {
              */
             recipe?: "flat" | "tile" | "detail";
             /**
-             * @description Of a large cloth the middle, at its full size; earlier previews go
+             * @description On a grid four times as coarse; earlier previews go
              * @default false
              */
             preview?: boolean;
@@ -7592,7 +7462,8 @@ export interface components {
              */
             directions?: number;
             /**
-             * @description Whose lobe is typed where the photographs tell none; default the session's kind
+             * @description Whose lobe is typed where the photographs tell none
+             * @default cotton
              * @enum {string}
              */
             cloth?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
@@ -7634,7 +7505,7 @@ export interface components {
              */
             recipe?: "flat" | "tile" | "detail";
             /**
-             * @description Of a large cloth the middle, at its full size; earlier previews go
+             * @description On a grid four times as coarse; earlier previews go
              * @default false
              */
             preview?: boolean;
@@ -7644,12 +7515,64 @@ export interface components {
              * @enum {string}
              */
             compress?: "none" | "zip" | "piz";
-        } & (unknown & {
+            /** @description Choose the coarsest of these grids that loses so many degrees */
+            to_deg?: number;
+            /** @description Choose the finest of these grids that takes so many seconds, by --explain */
+            within_s?: number;
+        } & (unknown & unknown & unknown & unknown & {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             kind: "finish";
+        });
+        /** Price of finished maps */
+        FinishPriceJob: {
+            /** @enum {string} */
+            kind: "finish_price";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Session folder, NAME.weft: its name */
+            session: string;
+            /** @description Id of the solve; default the session's current one */
+            solve?: string;
+            /**
+             * @description A preview will do, of half the size and without masks
+             * @default false
+             */
+            draft?: boolean;
+            /** @description Calibration folder; default the session's own; below the rig file's folder */
+            calibration?: string;
+            /** @description Of the grid; default what the camera sees */
+            mm_per_pixel?: number;
+            /** @description Recipe as JSON: {"steps": [{"do": "tile"}]} */
+            steps?: Record<string, unknown>;
+            /**
+             * @description Recipe: a TOML file, the maps.json of other maps, or flat, tile, detail (docs/finishing.md)
+             * @enum {string}
+             */
+            recipe?: "flat" | "tile" | "detail";
+            /**
+             * @description On a grid four times as coarse; earlier previews go
+             * @default false
+             */
+            preview?: boolean;
+            /**
+             * @description Of EXR files: none, zip, piz
+             * @default none
+             * @enum {string}
+             */
+            compress?: "none" | "zip" | "piz";
+            /** @description Choose the coarsest of these grids that loses so many degrees */
+            to_deg?: number;
+            /** @description Choose the finest of these grids that takes so many seconds, by --explain */
+            within_s?: number;
+        } & (unknown & unknown & unknown & unknown & {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "finish_price";
         });
         /** Export */
         ExportJob: {
@@ -7813,8 +7736,8 @@ export interface components {
             input: string;
             /** @description Calibration whose other parts are kept; it is never changed; below the rig file's folder */
             from?: string;
-            /** @description Folder of the new calibration, which must not exist; below the rig file's folder */
-            output: string;
+            /** @description Folder of the new calibration, which must not exist; default none: only says what comes out; below the rig file's folder */
+            output?: string;
             /**
              * @description What is printed; default that of board.toml
              * @enum {string}
@@ -7830,8 +7753,6 @@ export interface components {
             marker_share?: number;
             /** @description ChArUco: as OpenCV names it, DICT_5X5_100 */
             dictionary?: string;
-            /** @description ChArUco: number of its first marker in the dictionary, 0 */
-            first_marker?: number;
             /** @description Of the board: the table is so far below its print */
             thickness_mm?: number;
             /**
@@ -8095,7 +8016,7 @@ export interface components {
             /** @description That a session may hold, else it is lost alone: 1500M, 2G */
             memory_mb?: number;
         };
-        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["SampleJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["RigCheckJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
+        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["RigCheckJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["FinishPriceJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
     };
     responses: {
         /** @description Not a request that can be read */

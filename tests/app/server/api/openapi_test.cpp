@@ -192,6 +192,9 @@ TEST_F(OpenApi, DescribesEveryAnswerOfEveryCall) {
   }
   EXPECT_EQ(conforming("POST", "/api/v1/scan/pause", "/api/v1/scan/pause").status, 409);
   EXPECT_EQ(conforming("POST", scan, scan, R"({"fabric": "wool", "dry_run": true})").status, 200);
+  const char* const price = "/api/v1/scan/price";
+  EXPECT_EQ(conforming("POST", price, price, "{}").json()["rows"][0]["asked"], true);
+  EXPECT_EQ(conforming("POST", price, price, R"({"to_deg": 0.001})").status, 400);
   EXPECT_EQ(conforming("POST", scan, scan, R"({"fabric": "wool"})").status, 202);
   EXPECT_EQ(conforming("POST", scan, scan, R"({"fabric": "wool"})").status, 409);
   for (const char* step : {"/api/v1/scan/pause", "/api/v1/scan/resume", "/api/v1/scan/cancel"}) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scan takes and what for, before it begins: the daemon's bill in words.
-import type {Schemas} from '../../api/client';
-import {counted, degrees} from '../../ui/say';
+import {useState} from 'preact/hooks';
+import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
+import {Button} from '../../ui/button';
+import {Complaint} from '../../ui/complaint';
+import {counted, degrees, degreesOn} from '../../ui/say';
 import {durationOf} from '../../ui/words';
 
 export type BillLine = Schemas['BillLine'];
@@ -30,6 +33,29 @@ export function gainOf({without_deg, with_deg}: BillLine): string | null {
 const names: Record<BillLine['what'], string> = {
   lit: 'Lit', dark: 'Dark', repeat: 'Repeat', bracket: 'Bracket', polariser: 'Polariser', below: 'From below',
 };
+
+/** What else may be bought, asked for once: the lights, the calibration and the last scan tell it. */
+export function Offers({request}: {request: Schemas['ScanRequest']}) {
+  const [offers, take] = useState<Schemas['ScanPrices'] | ApiError | null>(null);
+  if (!offers) {
+    return <Button kind="quiet" onClick={() => void answer(api.POST('/api/v1/scan/price', {body: request})).catch(asApiError).then(take)}>Other shots</Button>;
+  }
+  if (offers instanceof Error) return <Complaint error={offers} />;
+  return (
+    <ul aria-label="Other shots">
+      {offers.rows.map((row) => (
+        <li key={row.what}>
+          <p class="line">
+            {row.chosen ? <strong>{row.what}: the one to buy</strong> : row.what}
+            <span class="numbers">{row.predicted_deg !== null && `${degreesOn(row.predicted_deg, row.solved)}, `}{costInWords(row.shots, row.seconds)}</span>
+          </p>
+          {row.asked && <p class="dim">As asked for.</p>}
+        </li>
+      ))}
+      {offers.notes.map((note) => <li key={note} class="dim">{note}</li>)}
+    </ul>
+  );
+}
 
 export function BillView({bill}: {bill: readonly BillLine[]}) {
   return (

@@ -4,11 +4,11 @@ import type {Signal} from '@preact/signals';
 import {hasTone} from '../../state/tone';
 import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
-import {BillView} from './bill';
+import {BillView, Offers} from './bill';
 import {cloth, say} from './cloth';
 import {millisecondsOf} from './exposure';
 import {bracket, repeats} from './preferences';
-import {chosen, proposal, times_us} from './proposal';
+import {chosen, proposal, scanRequest, times_us} from './proposal';
 
 export const exposureField = 'exposure';
 
@@ -69,6 +69,7 @@ export function ClothForm({onSaid}: {onSaid: () => void}) {
       </div>
       <MoreShots onSaid={onSaid} />
       {proposal.value.would?.bill && <BillView bill={proposal.value.would.bill} />}
+      {proposal.value.would?.bill && <div class="bill"><Offers key={JSON.stringify(scanRequest.value)} request={scanRequest.value} /></div>}
     </form>
   );
 }
