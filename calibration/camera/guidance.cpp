@@ -272,18 +272,45 @@ std::vector<BoardPose> new_poses(const Board& board, const Bundle& bundle, const
   return poses;
 }
 
+/// What views tell of a camera.
+struct Known {
+  double sigma_px = 0;
+  Matrix information;
+  NormalEquations of_table;
+};
+
+Known known_by(const Board& board, double thickness_mm, std::span<const BoardView> views,
+               std::optional<std::size_t> table, const Bundle& bundle, const BoardGuidance& guidance,
+               const GuidanceOptions& options) {
+  const CameraModel& camera = guidance.camera;
+  const double sigma_px = corner_sigma(guidance.residuals_px, options);
+  const Pose camera_from_rig = pose_of_camera(camera);
+  const Pose flat = {Pose().rotation, {0, 0, thickness_mm}};
+  const BoardView on_table = table ? views[*table] : view_of(board, camera, flat, 1);
+  Matrix information = prior_information(camera, options.start_focal_sigma, sigma_px);
+  for (std::size_t i = 0; i < views.size(); ++i)
+    information += information_of(views[i], camera, bundle.camera_from_board[i]);
+  if (!table) information += information_of(on_table, camera, camera_from_rig * flat);
+  return {sigma_px, std::move(information),
+          normal_equations({&on_table}, camera_parameters(kDistortion),
+                           {camera, {camera_from_rig}, {thickness_mm}})};
+}
+
+/// What a photograph in this pose would tell, by some of its corners.
+Matrix information_in(const Board& board, const CameraModel& camera, const BoardPose& pose) {
+  const BoardView some = view_of(board, camera, pose.rig_from_board, kEachOf);
+  const double scale = static_cast<double>(board.corners()) / static_cast<double>(some.corners.size());
+  return scale * information_of(some, camera, pose_of_camera(camera) * pose.rig_from_board);
+}
+
 /// The pose after which most is known, if it adds enough.
 void choose_by_information(const Board& board, const std::vector<BoardPose>& poses, const Matrix& information,
                            const Forecaster& forecast, const GuidanceOptions& options,
                            BoardGuidance& guidance) {
-  const Pose camera_from_rig = pose_of_camera(guidance.camera);
   std::optional<BoardPose> best;
   LensForecast then = guidance.now;
   for (const BoardPose& pose : poses) {
-    const BoardView some = view_of(board, guidance.camera, pose.rig_from_board, kEachOf);
-    const double scale = static_cast<double>(board.corners()) / static_cast<double>(some.corners.size());
-    const LensForecast with_it = forecast(
-        information + scale * information_of(some, guidance.camera, camera_from_rig * pose.rig_from_board));
+    const LensForecast with_it = forecast(information + information_in(board, guidance.camera, pose));
     if (missing(with_it, options) >= missing(then, options)) continue;
     best = pose;
     then = with_it;
@@ -340,27 +367,46 @@ BoardGuidance guide_board(const Board& board, double thickness_mm, const CameraM
   guidance.parts_seen = parts_with(guidance.corners);
   guidance.mean_residual_px = mean_residuals(views, bundle, guidance.corners, options);
 
-  const double sigma_px = corner_sigma(guidance.residuals_px, options);
-  const Pose camera_from_rig = pose_of_camera(guidance.camera);
-  const Pose flat = {Pose().rotation, {0, 0, thickness_mm}};
-  const BoardView on_table = table ? views[*table] : view_of(board, guidance.camera, flat, 1);
-  Matrix information = prior_information(guidance.camera, options.start_focal_sigma, sigma_px);
-  for (std::size_t i = 0; i < views.size(); ++i)
-    information += information_of(views[i], guidance.camera, bundle.camera_from_board[i]);
-  if (!table) information += information_of(on_table, guidance.camera, camera_from_rig * flat);
-  const Forecaster forecast(guidance.camera,
-                            normal_equations({&on_table}, camera_parameters(kDistortion),
-                                             {guidance.camera, {camera_from_rig}, {thickness_mm}}),
-                            sigma_px);
-  guidance.now = guidance.then = forecast(information);
+  const Known known = known_by(board, thickness_mm, views, table, bundle, guidance, options);
+  const Forecaster forecast(guidance.camera, known.of_table, known.sigma_px);
+  guidance.now = guidance.then = forecast(known.information);
   if (!table) return guidance;
 
   const bool is_known = is_met(guidance.now, options);
   const std::vector<BoardPose> poses = new_poses(board, bundle, guidance.camera, options);
-  if (!is_known) choose_by_information(board, poses, information, forecast, options, guidance);
+  if (!is_known) choose_by_information(board, poses, known.information, forecast, options, guidance);
   if (!guidance.next) choose_by_coverage(board, poses, options, guidance);
   guidance.is_done = is_known && !guidance.next;
   return guidance;
+}
+
+std::vector<LensForecast> forecasts_ahead(const Board& board, double thickness_mm, const CameraModel& start,
+                                          std::span<const BoardView> views, std::optional<std::size_t> table,
+                                          int more, const GuidanceOptions& options) {
+  const Bundle bundle = known_so_far(start, views);
+  BoardGuidance guidance;
+  guidance.camera = standing_over_the_table(bundle, start, table, thickness_mm);
+  compare_views(views, bundle, guidance);
+  Known known = known_by(board, thickness_mm, views, table, bundle, guidance, options);
+  const Forecaster forecast(guidance.camera, known.of_table, known.sigma_px);
+  std::vector<Matrix> candidates_tell;
+  for (const BoardPose& pose : new_poses(board, bundle, guidance.camera, options))
+    candidates_tell.push_back(information_in(board, guidance.camera, pose));
+  std::vector<LensForecast> ahead = {forecast(known.information)};
+  while (static_cast<int>(ahead.size()) <= more && !candidates_tell.empty()) {
+    std::size_t best = 0;
+    LensForecast then;
+    for (std::size_t i = 0; i < candidates_tell.size(); ++i) {
+      const LensForecast with_it = forecast(known.information + candidates_tell[i]);
+      if (i > 0 && missing(with_it, options) >= missing(then, options)) continue;
+      best = i;
+      then = with_it;
+    }
+    known.information += candidates_tell[best];
+    candidates_tell.erase(candidates_tell.begin() + static_cast<std::ptrdiff_t>(best));
+    ahead.push_back(then);
+  }
+  return ahead;
 }
 
 }  // namespace weft::calibration

@@ -83,6 +83,12 @@ BoardGuidance guide_board(const Board& board, double thickness_mm, const CameraM
                           std::span<const BoardView> views, std::optional<std::size_t> table,
                           const GuidanceOptions& options = {});
 
+/// What further photographs would let a calibration know: [0] after none, [1] after the one that
+/// guide_board() would ask for next, each other after the best that can follow, `more` of them at most.
+std::vector<LensForecast> forecasts_ahead(const Board& board, double thickness_mm, const CameraModel& start,
+                                          std::span<const BoardView> views, std::optional<std::size_t> table,
+                                          int more, const GuidanceOptions& options = {});
+
 /// The board upright in this pose, its centre's height following from the rest.
 BoardPose board_pose(const Board& board, const CameraModel& camera, BoardPose pose);
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "calibration/camera/guidance.h"
 #include "calibration/camera/lateral_fit.h"
 #include "calibration/camera/lens_fit.h"
 #include "calibration/camera/spread.h"
@@ -19,6 +20,7 @@
 #include "core/base/files.h"
 #include "core/describe/field_check.h"
 #include "core/image_io/linear_image.h"
+#include "core/rig/camera.h"
 
 namespace weft::calibration {
 namespace {
@@ -29,7 +31,7 @@ constexpr double kMostScatter_px = 1;  // of a tag's corner over the photographs
 
 Result<void> check_options(const CalibrateCameraOptions& options) {
   const Result<void> fits = check_fields(options);
-  return fits ? check_new(options.output) : fits;
+  return fits && !options.output.empty() ? check_new(options.output) : fits;
 }
 
 // The views to fit, the first of them on the table.
@@ -123,6 +125,50 @@ Result<std::vector<BoardEdge>> edges_of(const fs::path& folder, const Board& boa
   return all;
 }
 
+// Photographs of a board, and the camera that they tell.
+struct FittedBoards {
+  PrintedBoard board;
+  std::optional<Calibration> from;
+  BoardPhotographs all;
+  std::vector<std::size_t> viewed;
+  std::vector<BoardView> views;
+  LensFit fit;
+};
+
+Result<FittedBoards> fit_boards(const CalibrateCameraOptions& options, const JobContext& context) {
+  if (!is_there(options.input)) {
+    return Error{ErrorKind::kNoInput, "there are no photographs", options.input.string(),
+                 "the folder is not there", "check the path"};
+  }
+  Result<PrintedBoard> board = read_board_file(options.input / "board.toml", options.board);
+  if (!board) return std::move(board).error();
+  std::optional<Calibration> from;
+  if (!options.from.empty()) {
+    Result<Calibration> read = read_calibration(options.from);
+    if (!read) return std::move(read).error();
+    from = std::move(*read);
+  }
+  BoardFolderOptions folder = {options.input, board->board, options.tag_dictionary};
+  folder.limits.most_edge_px = options.most_blur_px;
+  if (from) folder.subject = from->subject;
+  if (from && from->camera) folder.size = from->camera->size;
+  Result<BoardPhotographs> all = read_board_photographs(folder, context);
+  if (!all) return std::move(all).error();
+  Result<std::vector<std::size_t>> viewed = views_of(*all, options.input);
+  if (!viewed) return std::move(viewed).error();
+  std::vector<BoardView> views;
+  for (const std::size_t i : *viewed)
+    views.push_back({all->photographs[i].name, all->photographs[i].sighting.corners});
+  Result<LensFit> fit = fit_lens(views, all->size,
+                                 {.table = 0,
+                                  .thickness_mm = board->thickness_mm,
+                                  .least_boards = static_cast<std::size_t>(options.least_boards),
+                                  .most_focal_sigma = options.most_focal_percent / 100});
+  if (!fit) return with_names(std::move(fit).error(), *all);
+  return FittedBoards{std::move(*board),  std::move(from),  std::move(*all),
+                      std::move(*viewed), std::move(views), std::move(*fit)};
+}
+
 }  // namespace
 
 void describe(Fields& fields, CalibrateCameraOptions& o) {
@@ -130,7 +176,7 @@ void describe(Fields& fields, CalibrateCameraOptions& o) {
       fields, o.input,
       "Folder of photographs of one board in many poses; those named table... show it flat on the table");
   describe_kept(fields, o.from);
-  describe_new_calibration(fields, o.output);
+  describe_wanted_calibration(fields, o.output);
   describe_rig(fields, o.rig);
   describe(fields, o.board);
   fields.value({"tags", "Dictionary of the tags on the table"}, o.tag_dictionary);
@@ -142,69 +188,68 @@ void describe(Fields& fields, CalibrateCameraOptions& o) {
                 .range = {0.001, 10},
                 .option = "--most-focal-percent"},
                o.most_focal_percent);
+  describe(fields, o.wish);
 }
 
 Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options, const JobContext& context) {
   if (const Result<void> ok = check_options(options); !ok) return ok.error();
-  if (!is_there(options.input)) {
-    return Error{ErrorKind::kNoInput, "there are no photographs", options.input.string(),
-                 "the folder is not there", "check the path"};
-  }
-  const Result<PrintedBoard> board = read_board_file(options.input / "board.toml", options.board);
-  if (!board) return board.error();
-  std::optional<Calibration> from;
-  if (!options.from.empty()) {
-    Result<Calibration> read = read_calibration(options.from);
-    if (!read) return std::move(read).error();
-    from = std::move(*read);
-  }
-
-  BoardFolderOptions folder = {options.input, board->board, options.tag_dictionary};
-  folder.limits.most_edge_px = options.most_blur_px;
-  if (from) folder.subject = from->subject;
-  if (from && from->camera) folder.size = from->camera->size;
-  const Result<BoardPhotographs> all = read_board_photographs(folder, context);
-  if (!all) return all.error();
-  const Result<std::vector<std::size_t>> viewed = views_of(*all, options.input);
-  if (!viewed) return viewed.error();
-  std::vector<BoardView> views;
-  for (const std::size_t i : *viewed)
-    views.push_back({all->photographs[i].name, all->photographs[i].sighting.corners});
-
-  const Result<LensFit> fit = fit_lens(views, all->size,
-                                       {.table = 0,
-                                        .thickness_mm = board->thickness_mm,
-                                        .least_boards = static_cast<std::size_t>(options.least_boards),
-                                        .most_focal_sigma = options.most_focal_percent / 100});
-  if (!fit) return with_names(fit.error(), *all);
-  const Result<std::vector<BoardEdge>> edges = edges_of(options.input, board->board, views, *fit, context);
+  const Result<FittedBoards> fitted = fit_boards(options, context);
+  if (!fitted) return fitted.error();
+  const auto& [board, from, all, viewed, views, fit] = *fitted;
+  const Result<std::vector<BoardEdge>> edges = edges_of(options.input, board.board, views, fit, context);
   if (!edges) return edges.error();
   if (context.stop.stop_requested()) return interrupted();
 
   CalibrateOutcome outcome;
   Calibration change;
-  change.subject = subject_of(options, from, all->camera);
-  change.camera = fit->camera;
-  change.camera_covariance = fit->covariance;
+  change.subject = subject_of(options, from, all.camera);
+  change.camera = fit.camera;
+  change.camera_covariance = fit.covariance;
   change.spread = median_spread(*edges);
-  const std::optional<LateralFit> lateral = fit_lateral_color(*edges, fit->camera);
+  const std::optional<LateralFit> lateral = fit_lateral_color(*edges, fit.camera);
   if (lateral) change.lateral = lateral->color;
-  change.fiducials = fiducials_of(*all, fit->camera, outcome.warnings);
+  change.fiducials = fiducials_of(all, fit.camera, outcome.warnings);
   if (from && !from->patches.empty()) {
     change.lights = from->lights;
     change.light_covariance = from->light_covariance;
     outcome.warnings.push_back(patches_left_out("camera"));
   }
   const CameraFitFacts facts = {
-      *all, *viewed, views, *fit, change.fiducials, change.spread, lateral, from, change.subject.rig};
+      all, viewed, views, fit, change.fiducials, change.spread, lateral, from, change.subject.rig};
   outcome.report = camera_report(facts);
   for (std::string& warning : left_out(facts)) outcome.warnings.push_back(std::move(warning));
+  if (options.output.empty()) return outcome;
   Result<Calibration> written =
       derive_calibration(options.from, std::move(change), options.output, report_files(outcome.report));
   if (!written) return std::move(written).error();
   outcome.folder = options.output;
   outcome.calibration = std::move(*written);
   return outcome;
+}
+
+Result<PosesPrices> price_camera(const CalibrateCameraOptions& options, const JobContext& context) {
+  if (const Result<void> fits = check_fields(options); !fits) return fits.error();
+  Stopwatch watch;
+  const Result<FittedBoards> fitted = fit_boards(options, context);
+  if (!fitted) return fitted.error();
+  const double fit_s = watch.lap();
+  const std::size_t there = fitted->views.size();
+  const std::vector<LensForecast> ahead =
+      forecasts_ahead(fitted->board.board, fitted->board.thickness_mm, fitted->fit.camera, fitted->views, 0,
+                      kMorePoses.back());
+  PosesPrices prices = {"board", {}};
+  for (const int more : kMorePoses) {
+    if (more >= static_cast<int>(ahead.size())) break;
+    const LensForecast& forecast = ahead[static_cast<std::size_t>(more)];
+    PosesPrice price = {.more = more, .poses = static_cast<int>(there) + more, .rig_s = kLaying_s * more};
+    price.fit_s = fit_s * price.poses / static_cast<double>(there);
+    price.focal_percent = forecast.focal_percent;
+    price.place_mm = forecast.place_mm;
+    price.predicted_deg = degrees(std::atan2(forecast.place_mm, centre_of(fitted->fit.camera).z));
+    prices.rows.push_back(price);
+  }
+  if (Result<void> ok = choose_poses(prices, options.wish); !ok) return std::move(ok).error();
+  return prices;
 }
 
 }  // namespace weft::calibration

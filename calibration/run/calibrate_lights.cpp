@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "calibration/lights/poses_ahead.h"
 #include "calibration/run/calibrate_patches.h"
 #include "calibration/run/described.h"
 #include "calibration/run/lights_report.h"
@@ -16,6 +17,7 @@
 #include "capture/rig.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
+#include "core/base/statistics.h"
 #include "core/describe/field_check.h"
 #include "core/image_io/image_io.h"
 #include "core/rig/light_field.h"
@@ -56,7 +58,51 @@ class LightsCalibration {
     return write();
   }
 
+  // What more poses would do to the fit's covariance: readings of them as the fit itself would have them.
+  Result<PosesPrices> price() {
+    if (Result<void> ok = prepare(); !ok) return std::move(ok).error();
+    if (Result<void> ok = read(); !ok) return std::move(ok).error();
+    if (Result<void> ok = fit_clean_paper(); !ok) return std::move(ok).error();
+    const LightFit here = *evidence_.fit;
+    const double scan_s = scan_seconds();
+    PosesPrices prices = {"sheet", {}};
+    for (const int more : kMorePoses) {
+      Stopwatch watch;
+      const PaperPhotographs all = with_more_poses(here.scene, evidence_.readings, sheet_.sheet, more);
+      Result<LightFit> fit = fit_lights(all.scene, all.readings, fit_options());
+      if (!fit) return std::move(fit).error();
+      PosesPrice price = {.more = more, .poses = static_cast<int>(all.scene.sheets.size())};
+      price.fit_s = watch.lap();
+      price.rig_s = more * (kLaying_s + scan_s);
+      price.position_mm = fit->worst_position_sigma_mm();
+      evidence_.fit = std::move(*fit);
+      if (Result<void> ok = predict(); !ok) return std::move(ok).error();
+      double sum = 0;
+      if (!evidence_.predicted) return too_few_lights();
+      for (const double deg : evidence_.predicted->slope_deg) sum += deg * deg;
+      price.predicted_deg = std::sqrt(sum / static_cast<double>(evidence_.predicted->slope_deg.size()));
+      prices.rows.push_back(price);
+    }
+    if (Result<void> ok = choose_poses(prices, options_.wish); !ok) return std::move(ok).error();
+    return prices;
+  }
+
  private:
+  Error too_few_lights() const {
+    return bad(ErrorKind::kBadData, "nothing can be foretold", options_.input.string(),
+               "fewer than three LEDs tell no normals", "calibrate more LEDs");
+  }
+
+  // Seconds that a pose is photographed for, by those that are there.
+  double scan_seconds() const {
+    std::vector<double> seconds;
+    for (const SheetCapture& capture : captures_.captures) {
+      const Result<Session> session = read_session(options_.input / capture.name);
+      if (const auto spent = session ? seconds_taken(*session) : std::nullopt) seconds.push_back(*spent);
+    }
+    return seconds.empty() ? 0 : median(seconds);
+  }
+
   Result<void> prepare();
   Result<void> read();
   Result<void> fit_clean_paper();
@@ -437,12 +483,7 @@ void describe(Fields& fields, CalibrateLightsOptions& o) {
       fields, o.input,
       "Folder of sessions (*.weft) of a sheet with tags, sheet.toml and, where measured anew, rig.toml");
   describe_kept(fields, o.from);
-  fields.value(
-      {.name = "output",
-       .says = "Folder of the new calibration, which must not exist; default none: only says what comes out",
-       .path = PathTo::kNewFolder,
-       .option = "-o,--output"},
-      o.output);
+  describe_wanted_calibration(fields, o.output);
   fields.choice({"method",
                  "physical (a model of each LED), per-pixel (directions cell by cell), seed (the iteration "
                  "of the paper "
@@ -457,10 +498,15 @@ void describe(Fields& fields, CalibrateLightsOptions& o) {
   fields.value({"lambertian", "Take the paper to follow Lambert's law"}, o.lambertian);
   fields.value({"accept_misfit", "Write the calibration although readings and model contradict each other"},
                o.accept_misfit);
+  describe(fields, o.wish);
 }
 
 Result<CalibrateOutcome> calibrate_lights(const CalibrateLightsOptions& options, const JobContext& context) {
   return LightsCalibration(options, context).run();
+}
+
+Result<PosesPrices> price_lights(const CalibrateLightsOptions& options, const JobContext& context) {
+  return LightsCalibration(options, context).price();
 }
 
 }  // namespace weft::calibration

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "calibration/run/calibrate_outcome.h"
+#include "calibration/run/poses_price.h"
 #include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/describe/fields.h"
@@ -29,6 +30,7 @@ struct CalibrateLightsOptions {
   double flicker_percent = 0.3;
   bool lambertian = false;
   bool accept_misfit = false;
+  PosesWish wish;
 };
 void describe(Fields& fields, CalibrateLightsOptions& options);
 
@@ -43,5 +45,10 @@ void describe(Fields& fields, CalibrateLightsOptions& options);
 /// paper of which more than a twentieth is faulty, and for a misfit (LightFit::misfits()) that is not
 /// accepted. A calibration from one sheet is written with a warning and its predicted error.
 Result<CalibrateOutcome> calibrate_lights(const CalibrateLightsOptions& options, const JobContext& context);
+
+/// What these sessions let that calibration know by kPhysical, and what more poses of the sheet would
+/// (calibration/lights/poses_ahead.h): of a slope of 20 degrees, rms over the frame. Nothing is written.
+/// Errors: as calibrate_lights() before it judges the fit, and choose_poses().
+Result<PosesPrices> price_lights(const CalibrateLightsOptions& options, const JobContext& context);
 
 }  // namespace weft::calibration

@@ -32,6 +32,16 @@ inline void describe_new_calibration(Fields& fields, std::filesystem::path& outp
                output);
 }
 
+/// The same where a step can do without.
+inline void describe_wanted_calibration(Fields& fields, std::filesystem::path& output) {
+  fields.value(
+      {.name = "output",
+       .says = "Folder of the new calibration, which must not exist; default none: only says what comes out",
+       .path = PathTo::kNewFolder,
+       .option = "-o,--output"},
+      output);
+}
+
 /// The server names its own rig.
 inline void describe_rig(Fields& fields, std::string& rig) {
   fields.value(

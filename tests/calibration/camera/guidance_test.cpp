@@ -99,6 +99,26 @@ TEST(GuideBoard, TellsAsMuchByFivePhotographsAsFifteenTakenAnyhow) {
   }
 }
 
+TEST(GuideBoard, ForeseesWhatFurtherPhotographsThenTell) {
+  Operator person;
+  for (int i = 0; i < 3; ++i) person.takes(*person.asks().next);
+  const auto ahead = calibration::forecasts_ahead(person.board, person.rig.thickness_mm, person.start,
+                                                  person.views, 0, 4, person.asked);
+  ASSERT_EQ(ahead.size(), 5u);
+  EXPECT_EQ(ahead[0].focal_percent, person.asks().now.focal_percent);
+  for (std::size_t i = 1; i < ahead.size(); ++i) {
+    EXPECT_LT(ahead[i].focal_percent, ahead[i - 1].focal_percent) << i;
+    EXPECT_LT(ahead[i].place_mm, ahead[i - 1].place_mm) << i;
+  }
+  const BoardGuidance before = person.asks();
+  ASSERT_TRUE(before.next);
+  EXPECT_EQ(ahead[1].place_mm, before.then.place_mm);
+  for (int i = 0; i < 2 && person.asks().next; ++i) person.takes(*person.asks().next);
+  const calibration::LensForecast taken = person.asks().now;
+  EXPECT_NEAR(std::log2(ahead[2].focal_percent / taken.focal_percent), 0, 0.5)
+      << ahead[2].focal_percent << " foreseen, " << taken.focal_percent;
+}
+
 TEST(GuideBoard, TellsWhereInTheFrameCornersMiss) {
   Operator person;
   EXPECT_TRUE(person.asks().mean_residual_px.empty()) << "one view fits no camera";

@@ -254,7 +254,7 @@ TEST_F(JobBody, IsRefusedBeforeItsVerbRuns) {
         R"({"kind": "solve", "session": "satin", "threads": 1})",
         R"({"kind": "rectify", "session": "satin", "mm_per_pixel": -1})",
         R"({"kind": "check", "session": "satin", "input": "photographs"})", R"({"kind": "check"})",
-        R"({"kind": "calibrate_camera", "input": "photographs"})",
+        R"({"kind": "calibrate_response", "input": "photographs"})",
         R"({"kind": "price", "session": "satin", "request_id": "a b"})"}) {
     EXPECT_EQ(kind_of(wrong), ErrorKind::kUsage) << wrong;
   }
