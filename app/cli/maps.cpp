@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -10,7 +11,9 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
+#include "core/describe/field_json.h"
 #include "library/chain/make.h"
+#include "material/run/finish_price.h"
 #include "material/run/maps_price.h"
 #include "material/run/maps_request.h"
 #include "material/run/session_sets.h"
@@ -115,10 +118,60 @@ Run add_maps(Options& options) {
   };
 }
 
+void print_grids(const material::FinishPrices& prices) {
+  std::string header =
+      fmt::format("{:>10}  {:>13}  {:>7}  {:>8}", "mm a pixel", "pixels", "degrees", "seconds");
+  for (const material::StepPrice& step : prices.rows.front().steps)
+    header += fmt::format("  {:>10}", step.name);
+  print(header);
+  for (const material::GridPrice& row : prices.rows) {
+    std::string line =
+        fmt::format("{:>10.4g}  {:>13}  {:>7.3g}  {:>8.3g}", row.mm_per_pixel,
+                    fmt::format("{} x {}", row.size.width, row.size.height), row.lost_deg, row.seconds);
+    for (const material::StepPrice& step : row.steps) line += fmt::format("  {:>10.3g}", step.seconds);
+    print(line + (row.is_chosen ? "  <- chosen" : ""));
+  }
+  print("degrees: how far normals of the finest grid are from that of the pixel that they lie in");
+}
+
+// What the grids cost, before one is made; the wish chooses.
+Result<int> price_grids(material::FinishRequest& arguments, const CommonArguments& common) {
+  const Result<material::Recipe> recipe = arguments.asked_recipe();
+  if (!recipe) return recipe.error();
+  arguments.maps.recipe = *recipe;
+  const Result<material::FinishPrices> prices = [&]() -> Result<material::FinishPrices> {
+    ProgressLine line(common.quiet);
+    const JobContext context = {common.threads, stop_on_signal(), line.callback()};
+    if (!arguments.only_explains) {
+      if (Result<void> ok = make_solve_first(arguments.maps, context, line.teller()); !ok)
+        return std::move(ok).error();
+    }
+    return material::price_finish(arguments.maps, arguments.grid, context);
+  }();
+  if (!prices) return prices.error();
+  const auto chosen = std::ranges::find_if(prices->rows, &material::GridPrice::is_chosen);
+  arguments.maps.mm_per_pixel = chosen->mm_per_pixel;
+  if (!arguments.only_explains) {
+    if (!common.quiet)
+      note(fmt::format("chose {:.4g} mm a pixel: {:.3g} s expected", chosen->mm_per_pixel, chosen->seconds));
+  } else if (common.json) {
+    print_json(object_of(*prices));
+  } else {
+    print_grids(*prices);
+  }
+  return kDone;
+}
+
 Run add_finish(Options& options) {
   const auto a = std::make_shared<material::FinishRequest>();
   add_options(options, *a);
-  return [a](const CommonArguments& common) { return make(*a, common); };
+  return [a](const CommonArguments& common) {
+    if (a->only_explains || a->grid.is_one()) {
+      const Result<int> priced = price_grids(*a, common);
+      if (!priced || a->only_explains) return priced;
+    }
+    return make(*a, common);
+  };
 }
 
 }  // namespace

@@ -515,6 +515,7 @@ Result<FinishingFacts> finish_surface(Surface& surface, const Recipe& recipe, co
     }
     finisher.facts.steps.push_back(std::move(*found));
   }
+  context.progress("finish", 1);
   return finisher.finish();
 }
 

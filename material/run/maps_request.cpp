@@ -112,6 +112,21 @@ void describe(Fields& fields, MapsRequest& r) {
 
 void describe(Fields& fields, FinishRequest& request) {
   describe_common(fields, request);
+  fields.value({.name = "explain",
+                .says = "Only say what each step takes and what is lost on this grid, and on ones twice and "
+                        "four times as coarse",
+                .said = Said::kAtThisMachine},
+               request.only_explains);
+  fields.value({.name = "to_deg",
+                .says = "Choose the coarsest of these grids that loses so many degrees",
+                .range = kAboveZero},
+               request.grid.to_deg);
+  fields.value({.name = "within_s",
+                .says = "Choose the finest of these grids that takes so many seconds, by --explain",
+                .range = kAboveZero},
+               request.grid.within_s);
+  fields.exclude("within_s", "to_deg");
+  for (const char* priced : {"explain", "to_deg", "within_s"}) fields.exclude(priced, "preview");
 }
 
 }  // namespace weft::material

@@ -6,6 +6,7 @@
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/describe/fields.h"
+#include "material/run/finish_price.h"
 #include "material/run/maps.h"
 #include "material/run/maps_price.h"
 
@@ -28,6 +29,8 @@ void describe(Fields& fields, MapsRequest& request);
 /// The same for `weft finish`, which derives no map.
 struct FinishRequest : MapsRequest {
   FinishRequest() { recipe = "tile"; }
+
+  GridWish grid;
 };
 void describe(Fields& fields, FinishRequest& request);
 

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
@@ -424,6 +425,39 @@ TEST_F(Maps, ByTheProgramAreTold) {
   expect_refusal(work_, {"finish", session_.string(), "--steps", "{"}, 64, {"--steps"});
   expect_refusal(work_, {"finish", session_.string(), "--steps", R"({"steps": [{"do": "tlie"}]})"}, 65,
                  {"tile"});
+}
+
+TEST_F(Maps, AreFinishedOnTheGridThatIsWorthItsSeconds) {
+  const auto explained = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"finish", session_.string(), "--recipe", "flat", "--explain", "--json", "-q"});
+    return run_weft(more).json()["rows"];
+  };
+  const Json rows = explained({});
+  ASSERT_EQ(rows.size(), 3u);
+  double lost = 1e9, mm = 1e9;
+  for (const Json& row : rows) {
+    double seconds = 0;
+    for (const Json& step : row["steps"]) seconds += step["seconds"].get<double>();
+    EXPECT_NEAR(row["seconds"].get<double>(), seconds, 1e-9);
+    EXPECT_EQ(row["steps"].front()["step"], "rectify");
+    EXPECT_EQ(row["steps"].back()["step"], "write");
+    EXPECT_LT(row["lost_deg"].get<double>(), lost);
+    EXPECT_LT(row["mm_per_pixel"].get<double>(), mm);
+    lost = row["lost_deg"], mm = row["mm_per_pixel"];
+  }
+  EXPECT_EQ(lost, 0) << "the finest loses nothing";
+  EXPECT_TRUE(rows[2]["chosen"]);
+  EXPECT_FALSE(is_there(session_ / "maps")) << "only told";
+  EXPECT_EQ(std::distance(fs::directory_iterator(session_ / "rectified"), {}), 1) << "the finest stays";
+  const double enough = rows[1]["lost_deg"].get<double>() * 1.001;
+  EXPECT_TRUE(explained({"--to", fmt::format("{}", enough)})[1]["chosen"]);
+  expect_refusal(work_,
+                 {"finish", session_.string(), "--recipe", "flat", "--explain", "--within", "1e-6", "-q"}, 64,
+                 {"no grid is that quick", "the coarsest, of"});
+  const Json made = run_weft({"finish", session_.string(), "--recipe", "flat", "--to",
+                              fmt::format("{}", enough), "--json", "-q"})
+                        .json();
+  EXPECT_NEAR(made["mm_per_pixel"].get<double>(), rows[1]["mm_per_pixel"].get<double>(), 1e-9);
 }
 
 }  // namespace

@@ -257,6 +257,7 @@ const std::vector<JobKind>& job_kinds() {
       {"maps", "Maps", {"maps"}, {walk<material::MapsRequest>}},
       {"maps_price", "Price of maps", {"maps", "--explain"}, {walk<material::MapsRequest>}},
       {"finish", "Finished maps", {"finish"}, {walk<material::FinishRequest>}},
+      {"finish_price", "Price of finished maps", {"finish", "--explain"}, {walk<material::FinishRequest>}},
       {"export",
        "Export",
        {"export"},
