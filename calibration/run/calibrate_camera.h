@@ -25,7 +25,7 @@ struct CalibrateCameraOptions {
   int least_boards = 5;     ///< photographs that must be usable; 3 to 1000
   /// Predicted sigma of the focal length above which boards are too alike; 0.001 to 10.
   double most_focal_percent = 0.3;
-  PosesWish wish;
+  PosesWish wish = {};
 };
 void describe(Fields& fields, CalibrateCameraOptions& options);
 

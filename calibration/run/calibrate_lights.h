@@ -30,7 +30,7 @@ struct CalibrateLightsOptions {
   double flicker_percent = 0.3;
   bool lambertian = false;
   bool accept_misfit = false;
-  PosesWish wish;
+  PosesWish wish = {};
 };
 void describe(Fields& fields, CalibrateLightsOptions& options);
 
