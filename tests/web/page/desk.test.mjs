@@ -300,10 +300,8 @@ test('the dark is counted down to on every tab, and its end is heard once unless
   });
   const other = await visitor.open(`${rig.address}/sessions`);
   const page = await atTheDesk(visitor);
-  await page.keyboard.press('Escape');
-  await page.keyboard.press('v');  // devices that are open are there at once
-  await page.getByRole('img', {name: 'Live view'}).waitFor();
-  await page.keyboard.press('n');
+  await rig.ask('rig/devices', {open: true});  // which are there at once
+  await page.getByText('devices open').waitFor();
   await scanByKeys(page, 'heard');
   for (const tab of [page, other]) {
     const counted = await tab.evaluate(() => window.counted);
