@@ -28,7 +28,7 @@ struct BoardSettings {
   std::optional<int> squares_x, squares_y;
   std::optional<double> square_mm, marker_share, thickness_mm;
   std::optional<std::string> dictionary;
-  std::optional<int> first_marker;
+  std::optional<int> first_marker = {};
 };
 void describe(Fields& fields, BoardSettings& settings);
 

@@ -55,7 +55,7 @@ Result<TriedGrid> tried_on(const MapsOptions& asked, double mm_per_pixel, const 
   options.mm_per_pixel = mm_per_pixel;
   options.output = folder;
   Stopwatch watch;
-  const Result<RectifyReport> rectified = rectified_maps(options, mm_per_pixel, context);
+  const Result<RectifyReport> rectified = rectified_maps(options, context);
   if (!rectified) return rectified.error();
   TriedGrid tried = {rectified->facts.size, {{"rectify", watch.lap()}}};
   StepTimes times;
@@ -151,7 +151,7 @@ Result<void> choose(std::vector<GridPrice>& rows, const GridWish& wish) {
 Result<FinishPrices> price_finish(const MapsOptions& options, const GridWish& wish,
                                   const JobContext& context) {
   Stopwatch watch;
-  const Result<RectifyReport> finest = rectified_maps(options, options.mm_per_pixel, context);
+  const Result<RectifyReport> finest = rectified_maps(options, context);
   if (!finest) return finest.error();
   const double rectified_s = watch.lap(), mm = finest->facts.mm_per_pixel;
   const Result<RectifiedSurface> surface = read_surface(finest->folder, mm);

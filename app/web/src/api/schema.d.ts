@@ -594,7 +594,7 @@ export interface paths {
                 query?: never;
                 header?: never;
                 path: {
-                    target: "board" | "sheet" | "tags";
+                    target: "board" | "sheet" | "tags" | "chart" | "ball";
                 };
                 cookie?: never;
             };
@@ -1255,7 +1255,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** What the finder's next picture shows of the table's tags and of the board of the set that is worked on */
+        /** What the finder's next picture shows of the table's tags and of the board or sheet that the set that is worked on asks for */
         get: {
             parameters: {
                 query?: {
@@ -1286,6 +1286,10 @@ export interface paths {
                             board: components["schemas"]["FramedShape"] | null;
                             /** @description Of the board, that were found */
                             corners: number;
+                            /** @description Around the sheet */
+                            sheet: components["schemas"]["FramedShape"] | null;
+                            /** @description To the person: what is seen, and how a sheet lies otherwise than asked */
+                            says: string;
                         };
                     };
                 };
@@ -1398,7 +1402,7 @@ export interface paths {
             };
             requestBody?: never;
             responses: {
-                /** @description As of a solve's colours, without white balance */
+                /** @description As of a solve's colours; without white balance where they are raw */
                 200: {
                     headers: {
                         [name: string]: unknown;
@@ -1839,7 +1843,7 @@ export interface paths {
             };
             requestBody?: never;
             responses: {
-                /** @description As of a solve's colours, without white balance */
+                /** @description As of a solve's colours; without white balance where they are raw */
                 200: {
                     headers: {
                         [name: string]: unknown;
@@ -3254,7 +3258,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                 };
                 cookie?: never;
@@ -3318,7 +3322,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                     /** @description As the facts of a step and the checks name it: straighten_2.png */
                     file: string;
@@ -3388,7 +3392,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                     /** @description Name of a layer; relit, the cloth under a lamp; difference, degrees between these normals and those of another solve; albedo_difference, percent of the albedo of another solve */
                     layer: string;
@@ -3445,6 +3449,70 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sessions/{name}/maps/{id}/swatch.jpg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The cloth as the library shows it: a square without tags, at most 60 mm and 320 pixels, lit from the upper left */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "image/jpeg": string;
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sessions/{name}/maps/{id}/pixel": {
         parameters: {
             query?: never;
@@ -3465,7 +3533,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                 };
                 cookie?: never;
@@ -3538,7 +3606,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                 };
                 cookie?: never;
@@ -3611,7 +3679,7 @@ export interface paths {
                 path: {
                     /** @description Session, without .weft */
                     name: string;
-                    /** @description Id of the set of maps */
+                    /** @description Id of the set of maps, or of the rectified maps that one was made of */
                     id: string;
                 };
                 cookie?: never;
@@ -3999,6 +4067,70 @@ export interface paths {
                     content: {
                         "application/octet-stream": string;
                         "image/png": string;
+                        "image/jpeg": string;
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/materials/{name}/builds/{id}/swatch.jpg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The cloth as the library shows it: a square without tags, at most 60 mm and 320 pixels, lit from the upper left */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Material, as GET materials has its key */
+                    name: string;
+                    /** @description Id of the build */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
                         "image/jpeg": string;
                     };
                 };
@@ -5333,6 +5465,70 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sessions/{name}/solves/{solve}/swatch.jpg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The cloth as the library shows it: a square without tags, at most 60 mm and 320 pixels, lit from the upper left */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                    /** @description Id of the solve; truth for that of a simulated session */
+                    solve: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "image/jpeg": string;
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sessions/{name}/solves/{solve}/pixel": {
         parameters: {
             query?: never;
@@ -6237,6 +6433,8 @@ export interface components {
             construction?: string | null;
             /** @description front or back */
             side?: string | null;
+            /** @description cotton, wool, velvet, satin or dark-satin */
+            kind?: string | null;
             notes?: string | null;
             /** @description Indices of shots that no solve shall use */
             left_out?: number[] | null;
@@ -6431,6 +6629,8 @@ export interface components {
             can: ("scan" | "devices" | "light" | "test-shot" | "pause" | "resume" | "cancel")[];
             /** @description The table is photographed, or will be in page_dark_ms: screens that it sees are to be black */
             dark: boolean;
+            /** @description Until a scan that looks for its devices turns dark true, at the least; null: nothing is announced */
+            dark_in_s: number | null;
             /** @description LEDs that are lit for a person to see by */
             lit: number[];
             /** @description Who holds them; empty: nobody */
@@ -6587,6 +6787,8 @@ export interface components {
             composition: string;
             construction: string;
             side: string;
+            /** @description cotton, wool, velvet, satin or dark-satin; empty: nobody said */
+            kind: string;
             notes: string;
             weight_g_m2: number | null;
             thickness_mm: number | null;
@@ -6755,6 +6957,11 @@ export interface components {
             created?: string;
             /** @description Of its files */
             bytes?: number;
+            swatch: {
+                x: number;
+                y: number;
+                side: number;
+            };
             /** @description What an albedo of relative scale is multiplied by to be looked at */
             display_gain: number;
             /** @description Where the LEDs were, in the rig frame; empty where nobody knows */
@@ -7078,10 +7285,10 @@ export interface components {
         };
         TargetRequest: {
             /**
-             * @description What to print: board of the lens, sheet of the lights, tags of the table
+             * @description What to print: board of the lens, sheet of the lights, tags of the table, chart for series of exposures, stand for a mirror ball
              * @enum {string}
              */
-            target: "board" | "sheet" | "tags";
+            target: "board" | "sheet" | "tags" | "chart" | "ball";
             /**
              * @description To print on, landscape
              * @default a4
@@ -7092,6 +7299,11 @@ export interface components {
             field_width_mm?: number;
             /** @description The same; default by the rig's calibration, else 133 */
             field_height_mm?: number;
+            /**
+             * @description Diameter of the ball, mm
+             * @default 40
+             */
+            ball_mm?: number;
         };
         /** Solve */
         SolveJob: {
@@ -7254,13 +7466,23 @@ export interface components {
             /** @description Name of a preset of weft export --list; default those that were exported before */
             presets?: string[];
         };
-        /** Torture scene */
+        /** Hard cases */
         TortureJob: {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             kind: "torture";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+        };
+        /** Sample cloth */
+        SampleJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "sample";
             /** @description A plain word: the same once more is the same job, and asks nothing new */
             request_id?: string;
         };
@@ -7343,7 +7565,7 @@ export interface components {
              */
             recipe?: "flat" | "tile" | "detail";
             /**
-             * @description On a grid four times as coarse; earlier previews go
+             * @description Of a large cloth the middle, at its full size; earlier previews go
              * @default false
              */
             preview?: boolean;
@@ -7381,8 +7603,7 @@ export interface components {
              */
             directions?: number;
             /**
-             * @description Whose lobe is typed where the photographs tell none
-             * @default cotton
+             * @description Whose lobe is typed where the photographs tell none; default the session's kind
              * @enum {string}
              */
             cloth?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
@@ -7424,7 +7645,7 @@ export interface components {
              */
             recipe?: "flat" | "tile" | "detail";
             /**
-             * @description On a grid four times as coarse; earlier previews go
+             * @description Of a large cloth the middle, at its full size; earlier previews go
              * @default false
              */
             preview?: boolean;
@@ -7462,8 +7683,7 @@ export interface components {
              */
             directions?: number;
             /**
-             * @description Whose lobe is typed where the photographs tell none
-             * @default cotton
+             * @description Whose lobe is typed where the photographs tell none; default the session's kind
              * @enum {string}
              */
             cloth?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
@@ -7505,7 +7725,7 @@ export interface components {
              */
             recipe?: "flat" | "tile" | "detail";
             /**
-             * @description On a grid four times as coarse; earlier previews go
+             * @description Of a large cloth the middle, at its full size; earlier previews go
              * @default false
              */
             preview?: boolean;
@@ -7553,7 +7773,7 @@ export interface components {
              */
             recipe?: "flat" | "tile" | "detail";
             /**
-             * @description On a grid four times as coarse; earlier previews go
+             * @description Of a large cloth the middle, at its full size; earlier previews go
              * @default false
              */
             preview?: boolean;
@@ -7753,6 +7973,8 @@ export interface components {
             marker_share?: number;
             /** @description ChArUco: as OpenCV names it, DICT_5X5_100 */
             dictionary?: string;
+            /** @description ChArUco: number of its first marker in the dictionary, 0 */
+            first_marker?: number;
             /** @description Of the board: the table is so far below its print */
             thickness_mm?: number;
             /**
@@ -8016,7 +8238,7 @@ export interface components {
             /** @description That a session may hold, else it is lost alone: 1500M, 2G */
             memory_mb?: number;
         };
-        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["RigCheckJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["FinishPriceJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
+        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["SampleJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["RigCheckJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["FinishPriceJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
     };
     responses: {
         /** @description Not a request that can be read */
