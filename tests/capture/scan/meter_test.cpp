@@ -142,7 +142,7 @@ TEST(Meter, SuggestsABracketWhereHighlightsHoldTheExposure) {
   ASSERT_TRUE(metering) << metering.error().message();
   EXPECT_NEAR(metering->exposure_us, 7813, 1);
   ASSERT_EQ(metering->warnings.size(), 1u);
-  EXPECT_THAT(metering->warnings.front(), HasSubstr("--bracket 8"));
+  EXPECT_THAT(metering->warnings.front(), HasSubstr("a bracket of 8 times"));
 }
 
 TEST(Meter, RecordsTheLedThatDecidesAndItsTestShots) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a person waits for the page in a window of 1280 x 720, drawn by software: `weft bench page` runs
+// How long a person waits for the page, drawn by software, and what a day's work takes: `weft bench page` runs
 // this on folders of sessions and reads its rows. Milliseconds by the clock on the wall: nothing else should run.
 import fs from 'node:fs';
 import path from 'node:path';
 import {Archive} from '../page/support/archive.mjs';
 import {launch, visit} from '../page/support/browser.mjs';
 import {startRig} from '../page/support/rig.mjs';
+import {journeyRows, packedRows, slowRows} from './journeys.mjs';
 
 const minutes = Number(process.env.WEFT_MINUTES ?? 0);  // that it pans
 const solve = {session: 'wide', id: '0123456789abcdef'};
@@ -131,6 +132,7 @@ async function viewerRows(browser, folder) {
     row('light under a hand, frames a second', megapixels, await dragLight(page), 25, true),
     row('a new place at 1:1, ms', megapixels, await newPlaces(page, size), 300),
     ...await panningRows(browser, page, size, megapixels),
+    ...await slowRows(browser, archive, `${archive.address}/viewer/${solve.session}/${solve.id}`, megapixels),
   ];
   await visitor.leave();
   await archive.stop();
@@ -147,7 +149,7 @@ async function deskRow(browser) {
 }
 
 const browser = await launch();
-const rows = [await deskRow(browser)];
+const rows = [...packedRows(), await deskRow(browser), ...await journeyRows(browser)];
 for (const folder of process.argv.slice(2)) rows.push(...await viewerRows(browser, folder));
 await browser.close();
 console.log(JSON.stringify(rows));

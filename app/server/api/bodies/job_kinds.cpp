@@ -26,8 +26,8 @@
 #include "material/assets/build_request.h"
 #include "material/run/maps_request.h"
 #include "material/run/rectify.h"
-#include "solve/run/solve_request.h"
 #include "simulator/sample_request.h"
+#include "solve/run/solve_request.h"
 #include "torture/torture_request.h"
 
 namespace weft::app {
