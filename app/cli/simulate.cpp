@@ -17,6 +17,7 @@
 #include "simulator/captures.h"
 #include "simulator/effects/bounds.h"
 #include "simulator/scene/scene.h"
+#include "simulator/scene/scene_key.h"
 #include "simulator/simulate.h"
 #include "simulator/simulation_plan.h"
 
@@ -32,6 +33,7 @@ struct SimulateArguments {
   std::filesystem::path output;
   std::optional<int> led;  ///< one frame alone: a LED from 1, or 0 for the dark shot
   bool explain = false;
+  std::optional<double> to_sigma;  ///< in the place of the scene's own
   bool captures = false;           ///< what calibrating the scene's rig needs, instead of one scan
   std::vector<std::string> parts;  ///< of the captures; empty: all
 };
@@ -166,8 +168,13 @@ Result<int> run_session(const simulator::Scene& scene, const SimulateArguments& 
 }
 
 Result<int> simulate(const SimulateArguments& arguments, const CommonArguments& common) {
-  const Result<simulator::Scene> scene = simulator::read_scene(arguments.scene);
+  Result<simulator::Scene> scene = simulator::read_scene(arguments.scene);
   if (!scene) return scene.error();
+  if (arguments.to_sigma && !scene->auto_to_sigma) {
+    return Error{ErrorKind::kUsage, "the scene says itself which effects run", "--to",
+                 "it names them, and has no effects = \"auto\"", "leave --to away, or let them be \"auto\""};
+  }
+  if (arguments.to_sigma) scene->auto_to_sigma = arguments.to_sigma;
   ProgressLine line(common.quiet);
   simulator::SimulateOptions options;
   options.tiles.threads = common.threads;
@@ -194,6 +201,11 @@ Run add_simulate(Options& options) {
                 "List the passes that run and why, the effects left out with what they would change and "
                 "cost, and after the run what each pass cost")
       .excludes(led);
+  options
+      .add("--to", &a->to_sigma,
+           "How far off a scene of effects = \"auto\" may be, in standard deviations of its noise: effects "
+           "whose bounds together stay below are left out; default the scene's")
+      .in_range(simulator::kAutomaticRange.least, simulator::kAutomaticRange.most);
   const Option captures =
       options
           .add("--captures", &a->parts,

@@ -151,6 +151,24 @@ TEST_F(CommandLine, ExplainListsThePassesAndWhatWasLeftOut) {
                                          testing::ContainsRegex("noise +no bound")));
 }
 
+TEST_F(CommandLine, SimulateLeavesOutWhatATolerancePermits) {
+  const std::string rest = "[camera]\nwidth = 48\nheight = 32\n[geometry]\nfamily = \"smooth\"\n";
+  put_bytes(work_ / "auto.toml", "effects = \"auto\"\nto = \"0.25 sigma\"\n" + rest);
+  put_bytes(work_ / "named.toml", "effects = [\"near_light\"]\n" + rest);
+  const auto left_out = [&](const std::string& to) {
+    const Outcome run =
+        run_weft({"simulate", "auto.toml", "-o", "to" + to + ".weft", "--to", to, "--json", "-q"},
+                 {.folder = work_.path()});
+    EXPECT_EQ(run.exit_code, 0) << run.error;
+    return run.json().at("left_out").size();
+  };
+  EXPECT_LT(left_out("0.001"), left_out("100"));
+  const Outcome named =
+      run_weft({"simulate", "named.toml", "-o", "named.weft", "--to", "1"}, {.folder = work_.path()});
+  EXPECT_EQ(named.exit_code, 64);
+  EXPECT_THAT(named.error, testing::HasSubstr("it names them"));
+}
+
 TEST_F(CommandLine, ExplainPricesWhatAutoLeavesOut) {
   put_bytes(work_ / "scene.toml",
             "effects = \"auto\"\nto = \"0.25 sigma\"\n[camera]\nwidth = 64\nheight = 64\n"

@@ -20,8 +20,8 @@ export function AskHardCases() {
   });
   return (
     <>
-      <p class="dim">What is hard in each stage, capture to export: how far off a plain formula is, and weft, and what weft says of it.</p>
       <Button isDisabled={ask.isBusy} onClick={() => void ask.run()}>Hard cases</Button>
+      <p class="dim">What is hard in each stage, capture to export: how far off a plain formula is, and weft, and what weft says of it.</p>
       <Complaint error={ask.complaint} />
     </>
   );
