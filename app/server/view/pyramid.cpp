@@ -32,6 +32,13 @@ Size halved(Size size) {
 }
 
 /// Averages of 2 x 2 pixels, at the right and lower edge of those there are.
+// How often it is halved until no side is longer.
+int halvings_to(Size size, int side) {
+  int count = 0;
+  for (; std::max(size.width, size.height) > side; size = halved(size)) ++count;
+  return count;
+}
+
 Image<float> halved(const Image<float>& image, bool is_deviation) {
   Image<float> half(halved(image.size()), image.planes());
   const int last_x = image.width() - 1, last_y = image.height() - 1;
@@ -133,10 +140,16 @@ Result<std::unique_ptr<Pyramid>> Pyramid::open_raw(const fs::path& file, const f
   return pyramid;
 }
 
+int levels_of(Size size) {
+  return halvings_to(size, kLeastSide) + 1;
+}
+
 int Pyramid::levels() const {
-  int levels = 1;
-  for (Size size = size_; std::max(size.width, size.height) > kTileSide; size = halved(size)) ++levels;
-  return levels;
+  return levels_of(size_);
+}
+
+int Pyramid::top() const {
+  return halvings_to(size_, kTileSide);
 }
 
 Size Pyramid::size(int level) const {

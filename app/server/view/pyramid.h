@@ -17,9 +17,14 @@ namespace weft::app {
 
 /// Tiles have this many pixels a side, those at the right and lower edge fewer.
 inline constexpr int kTileSide = 512;
+/// The last level has no longer side.
+inline constexpr int kLeastSide = 128;
 
-/// A layer at its size (level 0), at half of it (level 1) and so on, to the level that fits one tile. Odd
-/// sides are rounded up.
+/// Levels of a map of this size.
+int levels_of(Size size);
+
+/// A layer at its size (level 0), at half of it (level 1) and so on, to one of at most kLeastSide, which is
+/// there at once on any line. Odd sides are rounded up.
 ///
 /// A pixel of a level is the average of the four below it, by what the layer holds: normals as vectors, not
 /// brought back to unit length, so that the cloth relit from afar is as bright as from close by; deviations
@@ -40,6 +45,8 @@ class Pyramid {
 
   const Layer& layer() const { return layer_; }
   int levels() const;
+  /// The first level that fits one tile.
+  int top() const;
   Size size(int level) const;
   /// The pixels of a tile; empty where there is none.
   std::optional<Rect> tile(int level, int column, int row) const;

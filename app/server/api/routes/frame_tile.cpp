@@ -28,7 +28,7 @@ Result<Reply> tile_of_frame(const RigParts& parts, const FrameFile& frame, const
   if (!look) return look.error();
   const Result<std::shared_ptr<Pyramid>> pyramid = parts.views.frame(frame.file, frame.sha256);
   if (!pyramid) return pyramid.error();
-  const int number = level_of(level, (*pyramid)->levels());
+  const int number = level_of(level, (*pyramid)->top());
   const std::optional<Rect> part = (*pyramid)->tile(number, name->column, name->row);
   if (!part) return no_such_tile(tile, "it is beyond the frame");
   Result<Image<float>> planes = (*pyramid)->read(number, *part);

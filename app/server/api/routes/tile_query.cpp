@@ -78,8 +78,8 @@ Result<TileName> tile_name_of(const std::string& segment) {
   return none;
 }
 
-int level_of(const std::string& segment, int levels) {
-  if (segment == "top") return levels - 1;
+int level_of(const std::string& segment, int top) {
+  if (segment == "top") return top;
   return number_in<int>(segment).value_or(-1);
 }
 

@@ -23,7 +23,7 @@ struct TileName {
 Result<TileName> tile_name_of(const std::string& segment);
 
 /// A level of so many, from 0 to `top`; -1 for what is none.
-int level_of(const std::string& segment, int levels);
+int level_of(const std::string& segment, int top);
 
 /// A finite number of the query, within limits; `otherwise` where it is not there. kUsage.
 Result<double> number_of(const Call& call, const char* key, double least, double most, double otherwise);

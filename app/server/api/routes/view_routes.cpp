@@ -47,7 +47,7 @@ struct Asked {
   int bit = -1;
 
   Result<Image<float>> read(Pyramid& pyramid) const {
-    const int number = level_of(level, pyramid.levels());
+    const int number = level_of(level, pyramid.top());
     const std::optional<Rect> part = pyramid.tile(number, name.column, name.row);
     if (!part)
       return no_such_tile(fmt::format("{}/{}_{}", level, name.column, name.row), "it is beyond the map");

@@ -289,7 +289,7 @@ Result<double> gain_of(const RigParts& parts, const Viewed& viewed) {
   if (!has_relative_albedo(viewed)) return 1.0;
   const Result<std::shared_ptr<Pyramid>> albedo = pyramid_of(parts, viewed, "albedo");
   if (!albedo) return albedo.error();
-  const int top = (*albedo)->levels() - 1;
+  const int top = (*albedo)->top();
   const Result<Image<float>> whole = (*albedo)->read(top, *(*albedo)->tile(top, 0, 0));
   if (!whole) return whole.error();
   return report::display_scale(*whole);
@@ -337,15 +337,13 @@ std::string written_at(const fs::path& document) {
 
 Result<Json> viewed_json(const RigParts& parts, const Viewed& viewed) {
   const Size size = viewed.layers.size;
-  int levels = 1;
-  for (int side = std::max(size.width, size.height); side > kTileSide; side = (side + 1) / 2) ++levels;
   const Result<double> gain = gain_of(parts, viewed);
   if (!gain) return gain.error();
   const Result<Rect> swatch = swatch_part_of(parts, viewed);
   if (!swatch) return swatch.error();
   Json document = common_json(viewed);
   document["tile"] = kTileSide;
-  document["levels"] = levels;
+  document["levels"] = levels_of(size);
   document["layers"] = layers_json(viewed.layers);
   document["display_gain"] = *gain;
   document["leds"] = leds_of(viewed);

@@ -6942,6 +6942,7 @@ export interface components {
             albedo_scale: "absolute" | "relative";
             warnings: string[];
             tile: number;
+            /** @description Of the pyramid; the last is at most 128 pixels a side */
             levels: number;
             cloth_height_mm: number;
             /** @description At the middle of the frame */

@@ -3,7 +3,7 @@
 import {ApiError, fetched} from '../api/client';
 import {tileBytes} from './formats';
 import {Painter} from './painter';
-import {type Scene, type Sheet, type Side, addressOf, addressesOf, drawnOf, sheetsOf} from './scene';
+import {type Scene, type Sheet, type Side, addressOf, addressesOf, drawnOf, overviewsOf, sheetsOf} from './scene';
 import {type Draw, type LayerName, Surface, type TileTexture} from './surface';
 import {TileStore} from './tile_store';
 import {type Tile, boxOnCanvas, levelFor, repeats, tileBox, tileSize} from './tiles';
@@ -40,9 +40,8 @@ export class GlPainter extends Painter {
     const sheets = scene.sides.flatMap((side) => sheetsOf(side, scene.bits.names));
     this.kinds.clear();
     for (const sheet of sheets) {
-      const overview = {level: sheet.pyramid.levels - 1, column: 0, row: 0};
       const tiles = drawnOf(sheet.pyramid, scene, canvas, () => true);
-      for (const tile of [overview, ...tiles]) this.kinds.set(addressOf(sheet, tile), {sheet, tile});
+      for (const tile of [...overviewsOf(sheet.pyramid), ...tiles]) this.kinds.set(addressOf(sheet, tile), {sheet, tile});
     }
     this.store.want(addressesOf(sheets, scene, canvas));
   }

@@ -93,16 +93,21 @@ export function addressOf(sheet: Sheet, tile: Tile, form: TileForm = 'raw'): str
   return `${sheet.maps}/tiles/${sheet.layer}/${tile.level}/${tile.column}_${tile.row}.${form}${sheet.query}`;
 }
 
-/** The tiles of a sheet that a view wants: the whole map at once, then those of the right level. */
+/** The tiles of a sheet that a view wants: the whole map, by what any line brings at once and by one tile; then those of the right level. */
 export interface Wanted {
-  overview: Tile;
+  overviews: Tile[];
   tiles: Tile[];
+}
+
+export function overviewsOf({levels, size: {width, height}, side}: Pyramid): Tile[] {
+  const top = Math.max(0, Math.ceil(Math.log2(Math.max(width, height) / side)));
+  return [...new Set([levels - 1, top])].map((level) => ({level, column: 0, row: 0}));
 }
 
 export function wantedOf(pyramid: Pyramid, view: View, canvas: Size, offsets: Point[]): Wanted {
   const level = levelFor(pyramid, view.zoom);
   return {
-    overview: {level: pyramid.levels - 1, column: 0, row: 0},
+    overviews: overviewsOf(pyramid),
     tiles: tilesInView(pyramid, level, view, canvas, offsets),
   };
 }
@@ -127,13 +132,13 @@ export function drawnOf(pyramid: Pyramid, scene: Scene, canvas: Size, is_there: 
 
 /** Addresses of all that a scene needs, in the order in which they are wanted. */
 export function addressesOf(sheets: readonly Sheet[], scene: Scene, canvas: Size, form: TileForm = 'raw'): string[] {
-  const overviews: string[] = [];
+  const overviews: {address: string; turn: number}[] = [];
   const tiles: {address: string; turn: number}[] = [];
   for (const sheet of sheets) {
     const wanted = wantedOf(sheet.pyramid, scene.view, canvas, repeats(sheet.pyramid, scene.repeat));
-    overviews.push(addressOf(sheet, wanted.overview, form));
+    wanted.overviews.forEach((tile, turn) => overviews.push({address: addressOf(sheet, tile, form), turn}));
     wanted.tiles.forEach((tile, turn) => tiles.push({address: addressOf(sheet, tile, form), turn}));
   }
-  tiles.sort((a, b) => a.turn - b.turn);
-  return [...new Set([...overviews, ...tiles.map(({address}) => address)])];
+  const inTurn = (those: typeof tiles) => those.sort((a, b) => a.turn - b.turn).map(({address}) => address);
+  return [...new Set([...inTurn(overviews), ...inTurn(tiles)])];
 }

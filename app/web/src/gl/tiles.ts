@@ -2,7 +2,7 @@
 // How a map is cut into tiles, and which of them a view needs.
 import {type Box, type Point, type Size, type View, clamp, originOf, toMap} from './view';
 
-/** Level 0 is the map, each next level has half its sides, odd ones rounded up. The last fits one tile. */
+/** Level 0 is the map, each next level has half its sides, odd ones rounded up. The last is small on any line. */
 export interface Pyramid {
   size: Size;
   side: number;

@@ -39,7 +39,7 @@ TEST_F(ServedMaps, NamesItsSolvesAndTheirLayers) {
   EXPECT_EQ(solves["solves"][0]["id"], solve_.id);
   EXPECT_EQ(solves["truth"], true);
   const Json one = get(solve()).json();
-  EXPECT_EQ(one["levels"], 1) << "256 x 192 is one tile";
+  EXPECT_EQ(one["levels"], 2) << "128 x 96 is small on any line";
   EXPECT_NEAR(one["mm_per_pixel"].get<double>(), kMmPerPixel, 1e-6);
   EXPECT_EQ(one["layers"].size(), 7U) << one["layers"].dump();
 }
@@ -129,7 +129,7 @@ TEST_F(ServedMaps, TellAPixelsReadingsOnceTheyAreRead) {
 }
 
 TEST_F(ServedMaps, RefuseWhatIsNotThereAndWhatCannotBeRead) {
-  for (const auto& [path, status] : {std::pair<std::string, int>("/tiles/normal/1/0_0.raw", 404),
+  for (const auto& [path, status] : {std::pair<std::string, int>("/tiles/normal/2/0_0.raw", 404),
                                      {"/tiles/normal/-1/0_0.raw", 404},
                                      {"/tiles/normal/0/1_0.raw", 404},
                                      {"/tiles/normal/0/0_-1.raw", 404},

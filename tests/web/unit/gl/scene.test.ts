@@ -3,7 +3,7 @@ import {expect, test} from 'vitest';
 import {addressesOf, addressOf, drawnOf, type Scene, sheetsOf, type Side} from '../../../../app/web/src/gl/scene';
 
 const bits = ['SATURATED', 'SHADOWED', 'ZERO_DOF', 'DARK', 'ILL_CONDITIONED', 'NO_SOLUTION', 'SPECULAR', 'INVALID_READING'];
-const pyramid = {size: {width: 1400, height: 900}, side: 512, levels: 3};
+const pyramid = {size: {width: 1400, height: 900}, side: 512, levels: 5};
 const side: Side = {maps: '/api/v1/sessions/s/solves/1', pyramid, mode: 'relit', layer: 'relit', other: null, gain: 1, bits: []};
 const canvas = {width: 800, height: 600};
 
@@ -30,9 +30,9 @@ test('a difference names the other solve', () => {
   expect(addressOf(sheet!, {level: 1, column: 2, row: 0})).toBe('/api/v1/sessions/s/solves/1/tiles/difference/1/2_0.raw?with=s%2Ftruth');
 });
 
-test('the whole map comes first, then all layers from the middle outwards', () => {
+test('the whole map comes first, small and then as one tile, then all layers from the middle outwards', () => {
   const addresses = addressesOf(sheetsOf(side, bits), sceneOf(1), canvas).map((address) => address.replace(/.*tiles\//, ''));
-  expect(addresses.slice(0, 4)).toEqual(['normal/2/0_0.raw', 'albedo/2/0_0.raw', 'normal/0/1_0.raw', 'albedo/0/1_0.raw']);
+  expect(addresses.slice(0, 6)).toEqual(['normal/4/0_0.raw', 'albedo/4/0_0.raw', 'normal/2/0_0.raw', 'albedo/2/0_0.raw', 'normal/0/1_0.raw', 'albedo/0/1_0.raw']);
   expect(new Set(addresses).size).toBe(addresses.length);
 });
 

@@ -67,18 +67,15 @@ function FrameCard({session, frame}: {session: Session; frame: Frame}) {
 
 /** The relit quick solve, as soon as it is there. */
 function Preview({session}: {session: string}) {
-  const [picture, show] = useState<{solve: string; source: string} | null>(null);
+  const [solve, show] = useState<string | null>(null);
   useLatest((latest) => {
     show(null);
-    return followSolve(session, (solve) => {
-      if (solve === null) return;
-      latest(relitPicture(session, solve)).then((source) => show({solve, source}), () => show(null));
-    });
+    return followSolve(session, (found) => void latest(Promise.resolve(found)).then(show));
   }, [session]);
-  if (!picture) return <div class="preview waits">The quick solve is on its way</div>;
+  if (!solve) return <div class="preview waits">The quick solve is on its way</div>;
   return (
-    <a class="preview" href={`/viewer/${session}/${picture.solve}`}>
-      <img src={picture.source} alt="The cloth, relit" />
+    <a class="preview" href={`/viewer/${session}/${solve}`}>
+      <img src={relitPicture(session, solve)} alt="The cloth, relit" />
       <span>Open in the viewer</span>
     </a>
   );

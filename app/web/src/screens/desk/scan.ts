@@ -100,8 +100,6 @@ export function followSolve(session: string, changed: (solve: string | null) => 
 const lamp = '-0.6,0.5,0.62';
 
 /** The whole cloth in one picture of at most 512 pixels, under one lamp. */
-export async function relitPicture(session: string, solve: string): Promise<string> {
-  const path = {name: session, solve};
-  const {levels} = await answer(api.GET('/api/v1/sessions/{name}/solves/{solve}', {params: {path}}));
-  return `/api/v1/sessions/${session}/solves/${solve}/tiles/relit/${levels - 1}/0_0.jpg?light=${lamp}`;
+export function relitPicture(session: string, solve: string): string {
+  return `/api/v1/sessions/${session}/solves/${solve}/tiles/relit/top/0_0.jpg?light=${lamp}`;
 }

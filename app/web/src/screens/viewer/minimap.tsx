@@ -10,7 +10,7 @@ export function Minimap({viewer}: {viewer: Viewer}) {
   const maps = viewer.maps.value;
   const view = viewer.view.value;
   if (!maps || !view) return null;
-  const {width, height, levels, layers} = maps.solve;
+  const {width, height, layers} = maps.solve;
   const canvas = viewer.canvas.value;
   const from = toMap({x: 0, y: 0}, view, canvas);
   const to = toMap({x: canvas.width, y: canvas.height}, view, canvas);
@@ -31,7 +31,7 @@ export function Minimap({viewer}: {viewer: Viewer}) {
   return (
     <div class="minimap" style={{width: `${across}px`, height: `${down}px`}} onClick={goThere}>
       <img alt="The whole map" width={across} height={down}
-        src={`${addressOfMaps(maps.name)}/tiles/${layer}/${levels - 1}/0_0.png`} />
+        src={`${addressOfMaps(maps.name)}/tiles/${layer}/top/0_0.png`} />
       <svg viewBox={`0 0 ${width} ${height}`} aria-hidden="true">
         <rect x={left} y={top} width={clamp(to.x, 0, width) - left} height={clamp(to.y, 0, height) - top} />
       </svg>
