@@ -58,6 +58,9 @@ export class Viewer {
   private againTimer = 0;
   private isClosed = false;
 
+  /** Until the maps are there, or cannot be had. */
+  private readonly loaded: Promise<void>;
+
   constructor(readonly name: SolveName) {
     this.sight = signal(sightOf(place.value.query));
     this.probe = new Latest(
@@ -66,7 +69,7 @@ export class Viewer {
       (error) => (this.pixelComplaint.value = asApiError(error)),
       PROBE_MS,
     );
-    void this.load(name, this.maps);
+    this.loaded = this.load(name, this.maps);
     this.ends.push(
       effect(() => this.followPlace(place.value.query)),
       effect(() => this.followOther(this.beside.value)),
@@ -223,8 +226,10 @@ export class Viewer {
       const maps = await loadMaps(name);
       if (this.isClosed) return;
       into.value = maps;
+      if (into === this.maps) return;
+      await this.loaded;
       const first = this.maps.peek();
-      if (into === this.other && !name.isSet && (!first || isSameSize(first, maps))) await this.compare(name);
+      if (first && !name.isSet && isSameSize(first, maps)) await this.compare(name);
     } catch (error) {
       this.complaint.value = asApiError(error);
     }
