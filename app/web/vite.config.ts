@@ -3,7 +3,7 @@ import {build, defineConfig, type Plugin, type Rollup} from 'vite';
 
 const daemon = process.env.WEFT_DAEMON ?? 'http://127.0.0.1:8470';
 
-/** What is shown together is packed together, which is an eighth smaller; what several of these need is in the first file. */
+/** What is shown together is packed together, which is an eleventh smaller; what several of these need is in the first file. */
 const packs: readonly (readonly [name: string, holds: RegExp])[] = [
   ['desk', /\/screens\/desk\//],
   ['looks', /\/(gl|screens\/(viewer|material|finish))\/(?!sight|job_line)/],

@@ -167,12 +167,15 @@ std::vector<ShotsPrice> worth_telling(std::vector<ShotsPrice> all) {
 
 Error none_fits(const std::vector<ShotsPrice>& rows, const ShotsWish& wish) {
   std::string asked;
-  if (wish.to_deg) asked += fmt::format("--to {:g} degrees ", *wish.to_deg);
-  if (wish.within_s) asked += fmt::format("--within {:g} s", *wish.within_s);
+  if (wish.to_deg) asked += fmt::format("--to {:g} degrees", *wish.to_deg);
+  if (wish.within_s) asked += fmt::format("{}--within {:g} s", wish.to_deg ? ", " : "", *wish.within_s);
   const ShotsPrice& least = rows.front();
   const auto best = std::ranges::min_element(rows, {}, [](const ShotsPrice& row) { return badness_of(row); });
   const auto in_words = [](const ShotsPrice& row) {
-    return fmt::format("{} has {:.3g} degrees in {:.3g} s", row.what, badness_of(row), cost_of(row));
+    const std::string degrees =
+        std::isfinite(badness_of(row)) ? fmt::format("{:.3g} degrees", badness_of(row)) : "no normals";
+    return row.seconds ? fmt::format("{} has {} in {:.3g} s", row.what, degrees, *row.seconds)
+                       : fmt::format("{} has {} by {} shots", row.what, degrees, row.shots);
   };
   return {ErrorKind::kUsage, "no list of shots is that close and that quick", std::move(asked),
           fmt::format("the best, {}; the quickest, {}", in_words(*best), in_words(least)),

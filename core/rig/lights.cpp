@@ -70,6 +70,20 @@ double NearLights::log_gain(std::size_t led, int channel, double u, double v) co
   return log_gain_rgb[static_cast<std::size_t>(channel)].at(u, v) + own;
 }
 
+std::optional<std::array<double, 3>> white_gains(const Lights& lights) {
+  std::array<double, 3> sum = {};
+  const auto add = [&](const std::array<double, 3>& rgb) {
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += rgb[c];
+  };
+  if (const auto* near = std::get_if<NearLights>(&lights)) {
+    for (const NearLight& led : near->leds) add(led.flux_rgb);
+  } else {
+    for (const DistantLight& light : std::get<DistantLights>(lights).lights) add(light.irradiance_rgb);
+  }
+  if (!std::ranges::all_of(sum, [](double light) { return light > 0; })) return std::nullopt;
+  return std::array{sum[1] / sum[0], 1.0, sum[1] / sum[2]};
+}
+
 std::size_t light_count(const Lights& lights) {
   if (const auto* near = std::get_if<NearLights>(&lights)) return near->leds.size();
   return std::get<DistantLights>(lights).lights.size();

@@ -76,6 +76,10 @@ using Lights = std::variant<NearLights, DistantLights>;
 
 std::size_t light_count(const Lights& lights);
 
+/// By channel, what makes white paper grey under all of them together, green being 1. None where a channel
+/// has no light.
+std::optional<std::array<double, 3>> white_gains(const Lights& lights);
+
 /// The same lights, light k (from 0) `factors[k]` times as bright.
 Lights brightened(Lights lights, const std::vector<double>& factors);
 

@@ -72,9 +72,9 @@ Result<TriedGrid> tried_on(const MapsOptions& asked, double mm_per_pixel, const 
   return tried;
 }
 
-// By two sizes, never less than the larger of them took.
+// By two sizes, never less than the larger of them took; where they are one, in proportion to its pixels.
 double grown(double few_s, double few, double more_s, double more, double pixels) {
-  const double a_pixel = std::max(0.0, (more_s - few_s) / (more - few));
+  const double a_pixel = more > few ? std::max(0.0, (more_s - few_s) / (more - few)) : more_s / more;
   return more_s + a_pixel * (pixels - more);
 }
 
@@ -116,7 +116,7 @@ GridPrice price_of(const TriedGrid& grid, double mm_per_pixel, double lost_deg) 
   return price;
 }
 
-// The finest grid as the two others foretell it, `rectified_s` being known.
+// The finest grid as the two others, or the one of both, foretell it, `rectified_s` being known.
 TriedGrid foretold(const TriedGrid& few, const TriedGrid& more, Size size, double rectified_s) {
   TriedGrid finest = {size, more.steps};
   const auto pixels = static_cast<double>(size.pixels());
@@ -161,12 +161,18 @@ Result<FinishPrices> price_finish(const MapsOptions& options, const GridWish& wi
   std::vector<TriedGrid> tried;
   for (const int factor : kTriedFactors) {
     Result<TriedGrid> grid = tried_on(options, factor * mm, aside.path() / std::to_string(factor), context);
+    const bool is_too_coarse =
+        !grid && (grid.error().kind == ErrorKind::kBadData || grid.error().kind == ErrorKind::kUsage);
+    if (is_too_coarse) continue;
     if (!grid) return std::move(grid).error();
     prices.rows.push_back(price_of(*grid, factor * mm, lost_by(surface->surface, factor)));
     tried.push_back(std::move(*grid));
   }
-  const TriedGrid full = foretold(tried.front(), tried.back(), finest->facts.size, rectified_s);
-  prices.rows.push_back(price_of(full, mm, 0));
+  Result<TriedGrid> full = tried.empty()
+                               ? tried_on(options, mm, aside.path() / "1", context)
+                               : foretold(tried.front(), tried.back(), finest->facts.size, rectified_s);
+  if (!full) return std::move(full).error();
+  prices.rows.push_back(price_of(*full, mm, 0));
   if (Result<void> ok = choose(prices.rows, wish); !ok) return std::move(ok).error();
   return prices;
 }

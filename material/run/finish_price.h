@@ -48,6 +48,7 @@ void describe(Fields& fields, FinishPrices& prices);
 
 /// Finishes the session as make_maps() does on grids four times and twice as coarse, in the system's
 /// temporary folder, and says by these what the finest takes, each step by a constant and its pixels.
+/// A grid that is too coarse for the recipe is left out; where both are, the finest is tried itself.
 /// What is rectified for the finest grid stays, and is not made again. Errors of make_maps(); kUsage with
 /// what is possible where no grid is as quick as is wished.
 Result<FinishPrices> price_finish(const MapsOptions& options, const GridWish& wish,

@@ -427,6 +427,17 @@ TEST_F(Maps, ByTheProgramAreTold) {
                  {"tile"});
 }
 
+TEST_F(Maps, ArePricedWhereNoCoarserGridHoldsATile) {
+  ASSERT_EQ(run_weft({"finish", session_.string(), "--recipe", "tile", "-q"}).exit_code, 0);
+  const Outcome explained =
+      run_weft({"finish", session_.string(), "--recipe", "tile", "--explain", "--json", "-q"});
+  ASSERT_EQ(explained.exit_code, 0) << explained.error;
+  const Json rows = explained.json()["rows"];
+  ASSERT_EQ(rows.size(), 1U) << rows.dump() << ": 96 x 64 pixels hold no tile";
+  EXPECT_TRUE(rows[0]["chosen"]);
+  EXPECT_EQ(rows[0]["steps"].size(), 5U) << "rectify, three steps, write";
+}
+
 TEST_F(Maps, AreFinishedOnTheGridThatIsWorthItsSeconds) {
   const auto explained = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"finish", session_.string(), "--recipe", "flat", "--explain", "--json", "-q"});

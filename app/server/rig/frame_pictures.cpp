@@ -8,7 +8,6 @@
 #include <map>
 #include <span>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "app/server/http/error_reply.h"
@@ -101,22 +100,14 @@ void encode(Image<float>& picture, const std::array<float, 3>& gains) {
 
 }  // namespace
 
-std::optional<std::array<float, 3>> white_gains(const std::filesystem::path& frame,
+std::optional<std::array<float, 3>> frame_gains(const std::filesystem::path& frame,
                                                 const std::filesystem::path& calibration) {
   for (const auto& folder : {frame.parent_path().parent_path() / "calibration", calibration}) {
     const Result<Calibration> known = read_calibration(folder);
-    if (!known || !known->lights) continue;
-    std::array<double, 3> sum = {};
-    const auto add = [&](const std::array<double, 3>& rgb) {
-      for (std::size_t c = 0; c < 3; ++c) sum[c] += rgb[c];
-    };
-    if (const auto* near = std::get_if<NearLights>(&*known->lights)) {
-      for (const NearLight& led : near->leds) add(led.flux_rgb);
-    } else {
-      for (const DistantLight& light : std::get<DistantLights>(*known->lights).lights)
-        add(light.irradiance_rgb);
-    }
-    return std::array{static_cast<float>(sum[1] / sum[0]), 1.0F, static_cast<float>(sum[1] / sum[2])};
+    const auto gains = known && known->lights ? white_gains(*known->lights) : std::nullopt;
+    if (gains)
+      return std::array{static_cast<float>((*gains)[0]), static_cast<float>((*gains)[1]),
+                        static_cast<float>((*gains)[2])};
   }
   return std::nullopt;
 }
@@ -214,7 +205,7 @@ Result<void> FramePictures::make_files(const FrameFile& frame) try {
   const Result<RawFrame> raw = capture::decode_raw(frame.file);
   if (!raw) return raw.error();
   Image<float> picture = reduced(capture::half_size_picture(*raw, Response{}));
-  const std::optional<std::array<float, 3>> white = white_gains(frame.file, calibration_());
+  const std::optional<std::array<float, 3>> white = frame_gains(frame.file, calibration_());
   encode(picture, white ? *white : grey_gains(picture));
   if (Result<void> made = make_writable_folder(folder_); !made) return made;
   const std::vector<View<const float>> planes = {picture.plane(0), picture.plane(1), picture.plane(2)};

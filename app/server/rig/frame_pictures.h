@@ -29,9 +29,9 @@ struct FrameFile {
   std::optional<HistogramRgb> histogram = {};  ///< where it has been counted already
 };
 
-/// By channel, what makes white paper grey that is lit by the LEDs of a calibration: that of the frame's
-/// session, else this folder's. None where neither has lights.
-std::optional<std::array<float, 3>> white_gains(const std::filesystem::path& frame,
+/// white_gains() of the lights of a calibration: that of the frame's session, else this folder's. None where
+/// neither has lights.
+std::optional<std::array<float, 3>> frame_gains(const std::filesystem::path& frame,
                                                 const std::filesystem::path& calibration);
 
 /// What of frames is shown to people: a thumbnail and the histogram, kept in a folder under the frame's
@@ -50,7 +50,7 @@ class FramePictures {
 
   /// Has it made soon, if it is not there.
   void prepare(FrameFile frame);
-  /// The bytes of a PNG of 320 pixels at most: linear counts times white_gains(), or grey on average,
+  /// The bytes of a PNG of 320 pixels at most: linear counts times frame_gains(), or grey on average,
   /// sRGB-encoded. Made now if it is not there. Errors: those of decode_raw(), kTryAgain where too many wait
   /// for theirs, kInterrupted.
   Result<std::string> thumbnail(const FrameFile& frame);

@@ -129,6 +129,11 @@ TEST(ScanPrice, SaysTheBestWhereNothingIsCloseEnough) {
   ASSERT_FALSE(prices);
   EXPECT_EQ(prices.error().kind, ErrorKind::kUsage);
   EXPECT_THAT(prices.error().message(), HasSubstr("the best, 10 LEDs, repeat"));
+  options.wish.within_s.reset();
+  options.cost.reset();
+  EXPECT_THAT(price_scan(solver::ten_leds(), options).error().message(),
+              HasSubstr("--to 0.001 degrees: the best, 10 LEDs, repeat has 2.85 degrees by 13 shots"))
+      << "nobody knows their seconds";
 }
 
 TEST(ScanPrice, ForetellsNothingThatNobodyKnows) {

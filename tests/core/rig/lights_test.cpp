@@ -105,6 +105,13 @@ TEST(SelectLights, KeepsTheOrderAskedForAndTheSharedGain) {
   EXPECT_EQ(std::get<DistantLights>(*distant).lights[0].irradiance_rgb[0], 5);
 }
 
+TEST(WhiteGains, MakeWhitePaperGreyUnderAllLights) {
+  const DistantLights two = {{{{0, 0, 1}, {1, 2, 4}}, {{0, 0, 1}, {3, 6, 0}}}};
+  EXPECT_EQ(white_gains(two), (std::array<double, 3>{2, 1, 2}));
+  const DistantLights blind = {{{{0, 0, 1}, {0, 2, 4}}}};
+  EXPECT_FALSE(white_gains(blind)) << "there is no red to be brightened";
+}
+
 TEST(SelectLights, RefusesALightThatIsNotThereOrIsNamedTwice) {
   for (const Lights& lights : {near_lights(), distant_lights()}) {
     for (const int absent : {0, -1, 6, 2147483647}) {

@@ -6,7 +6,7 @@ import path from 'node:path';
 import {Archive} from '../page/support/archive.mjs';
 import {launch, visit} from '../page/support/browser.mjs';
 import {startRig} from '../page/support/rig.mjs';
-import {journeyRows, packedRows, slowRows} from './journeys.mjs';
+import {journeyRows, packedRows, row, slowRows} from './journeys.mjs';
 
 const minutes = Number(process.env.WEFT_MINUTES ?? 0);  // that it pans
 const solve = {session: 'wide', id: '0123456789abcdef'};
@@ -15,11 +15,6 @@ const window = {width: 1280, height: 720};
 
 function median(values) {
   return [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
-}
-
-/** A row: what is asked for is the most, or of frames a second the least. */
-function row(what, megapixels, reached, asked, isLeast = false) {
-  return {what, megapixels, reached: Math.round(reached), asked, holds: isLeast ? reached >= asked : reached <= asked};
 }
 
 async function whole(page) {

@@ -34,7 +34,7 @@ Result<Reply> tile_of_frame(const RigParts& parts, const FrameFile& frame, const
   Result<Image<float>> planes = (*pyramid)->read(number, *part);
   if (!planes) return planes.error();
   if (name->form != TileName::Form::kRaw)
-    balance(*planes, white_gains(frame.file, capture::calibration_now(parts.rig)));
+    balance(*planes, frame_gains(frame.file, capture::calibration_now(parts.rig)));
   Result<std::string> bytes = name->form == TileName::Form::kRaw
                                   ? raw_tile(LayerKind::kColor, *planes)
                                   : picture_tile(LayerKind::kColor, *planes, *look, name->picture());

@@ -9,7 +9,7 @@
 
 namespace weft::app {
 
-/// A tile of a raw frame's own pixels, for people with white_gains(): `tile` is X_Y.EXT. The reply says
+/// A tile of a raw frame's own pixels, for people with frame_gains(): `tile` is X_Y.EXT. The reply says
 /// nothing of how long it may be kept. kNoInput beyond the frame.
 Result<Reply> tile_of_frame(const RigParts& parts, const FrameFile& frame, const std::string& level,
                             const std::string& tile, const Call& call);
