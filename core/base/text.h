@@ -11,6 +11,13 @@ namespace weft {
 /// nearest known name is the one to suggest for an unknown one.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
+/// With the capitals of ASCII as small letters.
+std::string small_letters(std::string_view text);
+
+/// Whether one name stands before another as people count: "DSC_9" before "DSC_10", capitals as small
+/// letters. Names that differ in nothing but that keep the order of their bytes.
+bool stands_before(std::string_view a, std::string_view b);
+
 /// With a dash for each character that a file's name cannot hold everywhere: letters and digits of any script
 /// with their marks, '.', '_' and '-' stay; blanks, punctuation, symbols, control and format characters and
 /// what is no UTF-8 do not.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/statistics.h"
+#include "core/base/text.h"
 
 namespace weft::library {
 namespace {

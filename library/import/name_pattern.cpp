@@ -30,24 +30,6 @@ Error bad_pattern(const std::string& text, std::string why) {
           "write names as {session}/{fabric}_{led}.{ext}; {index} counts shots, {any} is passed over"};
 }
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-char small(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-/// A run of digits at the front of `text`, which it is taken from, without leading zeros.
-std::string_view take_number(std::string_view& text) {
-  std::size_t end = 0;
-  while (end < text.size() && is_digit(text[end])) ++end;
-  std::string_view number = text.substr(0, end);
-  text.remove_prefix(end);
-  number.remove_prefix(std::min(number.find_first_not_of('0'), number.size()));
-  return number;
-}
-
 std::int64_t number_of(const std::string& digits) {
   std::int64_t value = 0;
   std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -55,25 +37,6 @@ std::int64_t number_of(const std::string& digits) {
 }
 
 }  // namespace
-
-bool stands_before(std::string_view a, std::string_view b) {
-  std::string_view left = a, right = b;
-  while (!left.empty() && !right.empty()) {
-    if (is_digit(left[0]) && is_digit(right[0])) {
-      const std::string_view m = take_number(left), n = take_number(right);
-      if (m.size() != n.size()) return m.size() < n.size();
-      if (m != n) return m < n;
-      continue;
-    }
-    if (small(left[0]) != small(right[0])) {
-      return static_cast<unsigned char>(small(left[0])) < static_cast<unsigned char>(small(right[0]));
-    }
-    left.remove_prefix(1);
-    right.remove_prefix(1);
-  }
-  if (left.empty() != right.empty()) return left.empty();
-  return a < b;
-}
 
 Result<NamePattern> NamePattern::parse(const std::string& text) {
   if (text.size() > kLongestPattern) return bad_pattern(text.substr(0, 60), "it is too long");
@@ -125,7 +88,8 @@ std::optional<NameParts> NamePattern::match(const std::filesystem::path& file) c
     const std::string value = found[i + 1].str();
     if (groups_[i] == "session") said.session = value;
     if (groups_[i] == "fabric") said.fabric = value;
-    if (groups_[i] == "led") said.led = is_digit(value[0]) ? static_cast<int>(number_of(value)) : 0;
+    if (groups_[i] == "led")
+      said.led = value[0] >= '0' && value[0] <= '9' ? static_cast<int>(number_of(value)) : 0;
     if (groups_[i] == "index") said.index = number_of(value);
   }
   return said;

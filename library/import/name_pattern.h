@@ -16,10 +16,6 @@
 
 namespace weft::library {
 
-/// Whether one name stands before another as people count: "DSC_9" before "DSC_10", capitals as small
-/// letters. Names that differ in nothing but that keep the order of their bytes.
-bool stands_before(std::string_view a, std::string_view b);
-
 /// What a name says where it follows a pattern. What the pattern does not hold is empty.
 struct NameParts {
   std::string session, fabric;

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "core/base/files.h"
+#include "core/base/text.h"
 #include "core/image_io/linear_image.h"
 #include "library/import/name_pattern.h"
 

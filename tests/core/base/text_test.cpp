@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/text.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
 
 namespace weft {
 namespace {
@@ -43,6 +48,21 @@ TEST(FileNameOf, BeginsAndEndsWithALetterAndIsCutBetweenCharacters) {
 
 TEST(EscapeMarkup, LeavesNothingThatAPageWouldTakeForItsOwn) {
   EXPECT_EQ(escape_markup("a<b> & \"c\""), "a&lt;b&gt; &amp; &quot;c&quot;");
+}
+
+TEST(StandsBefore, CountsAsPeopleDo) {
+  std::vector<std::string> names = {"b10", "a", "B9", "b", "b010x", "b9a", "10", "9", "b1"};
+  std::ranges::sort(names, stands_before);
+  EXPECT_THAT(names, testing::ElementsAre("9", "10", "a", "b", "b1", "B9", "b9a", "b10", "b010x"));
+}
+
+TEST(StandsBefore, OrdersStrictly) {
+  const std::vector<std::string> names = {"a01", "a1", "A1", "a001", "a", "", "1", "01"};
+  for (const std::string& a : names) {
+    for (const std::string& b : names) {
+      EXPECT_EQ(stands_before(a, b) + stands_before(b, a), a == b ? 0 : 1) << a << " and " << b;
+    }
+  }
 }
 
 }  // namespace

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "library/import/name_pattern.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <algorithm>
-#include <vector>
 
 namespace weft::library {
 namespace {
@@ -55,21 +51,6 @@ TEST(NamePattern, RefusesWordsThatItDoesNotHave) {
     const Result<NamePattern> parsed = NamePattern::parse(text);
     ASSERT_FALSE(parsed) << text;
     EXPECT_EQ(parsed.error().kind, ErrorKind::kUsage) << text;
-  }
-}
-
-TEST(StandsBefore, CountsAsPeopleDo) {
-  std::vector<std::string> names = {"b10", "a", "B9", "b", "b010x", "b9a", "10", "9", "b1"};
-  std::ranges::sort(names, stands_before);
-  EXPECT_THAT(names, testing::ElementsAre("9", "10", "a", "b", "b1", "B9", "b9a", "b10", "b010x"));
-}
-
-TEST(StandsBefore, OrdersStrictly) {
-  const std::vector<std::string> names = {"a01", "a1", "A1", "a001", "a", "", "1", "01"};
-  for (const std::string& a : names) {
-    for (const std::string& b : names) {
-      EXPECT_EQ(stands_before(a, b) + stands_before(b, a), a == b ? 0 : 1) << a << " and " << b;
-    }
   }
 }
 
