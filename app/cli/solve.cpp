@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <memory>
@@ -259,6 +260,8 @@ Result<int> solve(solve::SolveRequest& arguments, const CommonArguments& common)
                       : solve::solve_photos(arguments.photos, options, context);
   }();
   if (!report) return std::move(report).error();
+  if (!report->facts.assumed.empty() && !common.quiet)
+    note(fmt::format("of the photographs: {}", fmt::join(report->facts.assumed, "; ")));
   if (report->transfer && !common.quiet) {
     note(fmt::format("photographs are taken as {}; --transfer overrides",
                      *report->transfer == Transfer::kAuto

@@ -112,6 +112,9 @@ void describe(Fields& fields, SolveFacts& f) {
   fields.object({"sharpening", "Where the lens's spread was undone", {}, kUnlessEmpty}, f.sharpening);
   fields.object({"lateral_color", "Where it was taken out", {}, kUnlessEmpty}, f.lateral_color);
   fields.list({"warnings", "What speaks against it"}, f.warnings);
+  fields.value(
+      {"assumed", "What was taken for granted of photographs and their lights; since 1.2", {}, kUnlessEmpty},
+      f.assumed);
   fields.value({"pictures", "Files in its folder"}, f.pictures);
   fields.list({"gates", "Of the level reference: whether there was anything to gain", {}, kUnlessEmpty},
               f.gates);
@@ -128,7 +131,8 @@ Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string
 }
 
 Json json_of(const SolveFacts& facts) {
-  Json json = {{"schema", fmt::format("{}/{}", kSolveProduct.schema, facts.taken ? "1.1" : "1")}};
+  const char* minor = !facts.assumed.empty() ? "1.2" : facts.taken ? "1.1" : "1";
+  Json json = {{"schema", fmt::format("{}/{}", kSolveProduct.schema, minor)}};
   write_fields(json, facts);
   return json;
 }

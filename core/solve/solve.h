@@ -122,6 +122,7 @@ struct SolveFacts {
   std::int64_t pixels = 0;  ///< with a solution
   StatusCounts status;
   std::vector<Verdict> warnings;
+  std::vector<std::string> assumed;    ///< of photographs and the file of their lights
   std::vector<std::string> pictures;   ///< files in its folder
   std::optional<LeftOutFacts> check;   ///< where a light could be left out
   std::optional<SolveError> error;     ///< where there is a truth

@@ -10,14 +10,14 @@
 
 namespace weft::solve {
 
-/// Where photographs under distant lights are: one of `folder` and `light_file` is named.
+/// Where photographs under distant lights and their lights are: `folder`, `light_file` or both are named.
 struct PhotoOptions {
-  /// A folder in the layout of the DiLiGenT benchmark (Shi et al., CVPR 2016): filenames.txt,
-  /// light_directions.txt and, where they exist, light_intensities.txt (R G B a line) and a mask
-  /// (solve/input/photo_mask.h).
+  /// Of photographs and of a mask (solve/input/photo_mask.h). Without `light_file` its lights are in it or
+  /// above (solve/input/light_list.h).
   std::filesystem::path folder;
-  /// Or an RTI light file: a count, then one line "file x y z" a photograph.
+  /// What holds the lights; without `folder` also where photographs are, beside it or as it says.
   std::filesystem::path light_file;
+  bool skips_missing = false;  ///< leaves out lights whose photograph is not there
   Transfer transfer = Transfer::kAuto;
   Clipped clipped = Clipped::kMark;
   std::vector<int> lights;  ///< numbers from 1; empty: all

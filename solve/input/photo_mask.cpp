@@ -4,14 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "core/base/percent.h"
+#include "core/base/text.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/linear_image.h"
 
@@ -59,13 +60,17 @@ bool is_count_of_one(float most, SampleType type) {
 
 }  // namespace
 
+bool is_mask_name(const fs::path& file) {
+  const std::string stem = small_letters(file.stem().string());
+  if (!is_linear_image(file) || !stem.ends_with("mask")) return false;
+  return stem == "mask" || std::string_view("._-").find(stem[stem.size() - 5]) != std::string_view::npos;
+}
+
 Result<fs::path> find_mask(const fs::path& folder) {
   std::vector<fs::path> found;
   std::error_code failed;
   for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
-    std::string stem = entry->path().stem().string();
-    std::ranges::transform(stem, stem.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (stem == "mask" && is_linear_image(entry->path())) found.push_back(entry->path());
+    if (is_mask_name(entry->path())) found.push_back(entry->path());
   }
   if (found.empty()) return fs::path();
   std::ranges::sort(found);

@@ -11,8 +11,11 @@
 
 namespace weft::solve {
 
-/// The picture in the folder that is called mask, in capitals or not and of any format that photographs have;
-/// empty where there is none. kBadData where there are several.
+/// Whether a picture is called mask, or NAME.mask, NAME_mask or NAME-mask, in capitals or not.
+bool is_mask_name(const std::filesystem::path& file);
+
+/// The picture in the folder that has such a name and any format that photographs have; empty where there is
+/// none. kBadData where there are several.
 Result<std::filesystem::path> find_mask(const std::filesystem::path& folder);
 
 /// 1 where cloth is, of photographs of this size: where the brightest colour is over one half, and so is the

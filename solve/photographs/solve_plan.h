@@ -35,6 +35,8 @@ struct SolvePlan {
   Clipped clipped = Clipped::kMark;
   SolveInput input;                   ///< for solve.json, and what the id of the solve is made of
   std::vector<std::string> warnings;  ///< about shots that will not be used
+  /// What was taken for granted of photographs and the file of their lights, each a few words.
+  std::vector<std::string> assumed;
   solver::Extent extent = solver::Extent::kTiles;  ///< of the level that will be solved by
   std::shared_ptr<const SolvePlan> second_pose;    ///< in which the lobe is sought too; null: none
 

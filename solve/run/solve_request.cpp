@@ -31,21 +31,23 @@ void describe_session(Fields& fields, SolveRequest& r) {
 }
 
 void describe_photographs(Fields& fields, SolveRequest& r) {
-  fields.value(
-      {.name = "photos",
-       .says = "Folder of photographs under distant lights: filenames.txt, light_directions.txt (unit x y z, "
-               "x right, y up, z to the camera), light_intensities.txt (R G B), mask.png",
-       .said = Said::kAtThisMachine},
-      r.photos.folder);
-  fields.value({.name = "light_file",
-                .says = "RTI light file: a count, then a line \"file x y z\" a photograph",
-                .option = "--lp",
+  fields.value({.name = "photos",
+                .says = "Folder of photographs under distant lights, whose light file is in it or above",
                 .said = Said::kAtThisMachine},
-               r.photos.light_file);
+               r.photos.folder);
+  fields.value(
+      {.name = "light_file",
+       .says = "Their lights: .lp, light_directions.txt, CSV, .npy, .dome, .relight or JSON of Meshroom",
+       .option = "--lp",
+       .said = Said::kAtThisMachine},
+      r.photos.light_file);
+  fields.value({.name = "skip_missing",
+                .says = "Leave out lights whose photograph is not there",
+                .said = Said::kAtThisMachine},
+               r.photos.skips_missing);
   fields.need_one({"session", "photos", "light_file"});
   fields.exclude("session", "photos");
   fields.exclude("session", "light_file");
-  fields.exclude("photos", "light_file");
 }
 
 void describe_wish(Fields& fields, SolveRequest& r) {

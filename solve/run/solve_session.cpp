@@ -186,6 +186,7 @@ class Run {
     facts_.method = options.method;
     facts_.compression = options.compression;
     facts_.input = plan.input;
+    facts_.assumed = plan.assumed;
     facts_.foretold = options.foretold;
   }
 
