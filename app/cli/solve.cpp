@@ -261,13 +261,7 @@ Result<int> solve(solve::SolveRequest& arguments, const CommonArguments& common)
   }();
   if (!report) return std::move(report).error();
   if (!report->facts.assumed.empty() && !common.quiet)
-    note(fmt::format("of the photographs: {}", fmt::join(report->facts.assumed, "; ")));
-  if (report->transfer && !common.quiet) {
-    note(fmt::format("photographs are taken as {}; --transfer overrides",
-                     *report->transfer == Transfer::kAuto
-                         ? "linear or srgb, each by its kind, as they are not all of one kind"
-                         : name_of(*report->transfer)));
-  }
+    note(fmt::format("assumed: {}", fmt::join(report->facts.assumed, "; ")));
   if (common.json) {
     print_json(json_of(*report));
   } else {

@@ -23,7 +23,9 @@ namespace {
 
 enum Tag : std::uint16_t {  // TIFF 6.0, Exif 2.32, TIFF/EP, DNG 1.4
   kMake = 271,
+  kModel = 272,
   kStripOffsets = 273,
+  kOrientation = 274,
   kStripByteCounts = 279,
   kTileOffsets = 324,
   kTileByteCounts = 325,
@@ -36,6 +38,7 @@ enum Tag : std::uint16_t {  // TIFF 6.0, Exif 2.32, TIFF/EP, DNG 1.4
   kImageNumber = 37393,
   kMakerNote = 37500,
   kSubSecTimeOriginal = 37521,
+  kLensModel = 42036,
   kDngVersion = 50706,
   kNikonShutterCount = 0x00A7,
 };
@@ -199,6 +202,52 @@ std::string ending_of_no_tiff(const ReadAt& read_at) {
   return raw == kUnreadRaws.end() ? "" : std::string(raw->ending);
 }
 
+std::uint32_t big_endian(std::span<const std::uint8_t> bytes) {
+  std::uint32_t value = 0;
+  for (const std::uint8_t byte : bytes) value = value << 8 | byte;
+  return value;
+}
+
+constexpr int kMostParts = 10000;  // of a file, that are walked through
+
+/// Where the EXIF of a JPEG begins (JEITA CP-3451, 4.5.4): the segment APP1 of that name, before the image.
+std::optional<std::uint64_t> exif_of_jpeg(const ReadAt& read_at) {
+  constexpr std::string_view kName("Exif\0\0", 6);
+  std::array<std::uint8_t, 10> segment;
+  std::uint64_t at = 2;
+  for (int i = 0; i < kMostParts && read_at(at, segment) && segment[0] == 0xff; ++i) {
+    const std::uint8_t marker = segment[1];
+    if (marker == 0xda || marker == 0xd9) return {};
+    if (marker == 0xe1 && std::memcmp(&segment[4], kName.data(), kName.size()) == 0) return at + segment.size();
+    at += 2 + big_endian(std::span(segment).subspan(2, 2));
+  }
+  return {};
+}
+
+/// Where the chunk eXIf of a PNG (third edition, 11.3.3.4) begins.
+std::optional<std::uint64_t> exif_of_png(const ReadAt& read_at) {
+  std::array<std::uint8_t, 8> chunk;
+  std::uint64_t at = 8;
+  for (int i = 0; i < kMostParts && read_at(at, chunk); ++i) {
+    if (std::memcmp(&chunk[4], "eXIf", 4) == 0) return at + chunk.size();
+    at += 12 + std::uint64_t{big_endian(std::span(chunk).first(4))};
+  }
+  return {};
+}
+
+constexpr Beginning kPng = {"png", 0, "\x89PNG\r\n\x1a\n"};
+
+/// The TIFF that a JPEG or a PNG carries along.
+std::optional<Tiff> carried_exif(const ReadAt& read_at) {
+  const std::optional<std::uint64_t> at = begins(read_at, kJpeg)  ? exif_of_jpeg(read_at)
+                                          : begins(read_at, kPng) ? exif_of_png(read_at)
+                                                                  : std::nullopt;
+  if (!at) return {};
+  return Tiff::read([read_at, base = *at](std::uint64_t offset, std::span<std::uint8_t> bytes) {
+    return read_at(base + offset, bytes);
+  });
+}
+
 double at_least_0(std::optional<double> value) {
   return std::max(0.0, value.value_or(0));
 }
@@ -215,18 +264,27 @@ bool is_unread_raw_ending(const std::string& ending) {
 
 PhotographFacts photograph_facts(const ReadAt& read_at) {
   PhotographFacts facts;
-  const std::optional<Tiff> main = Tiff::read(read_at);
-  if (!main) {
+  std::optional<Tiff> main = Tiff::read(read_at);
+  if (main) {
+    facts.ending = tiff_ending(read_at, *main);
+    facts.data_end = data_end(*main);
+  } else {
     facts.ending = ending_of_no_tiff(read_at);
-    return facts;
+    main = carried_exif(read_at);
   }
-  facts.ending = tiff_ending(read_at, *main);
-  facts.data_end = data_end(*main);
+  if (!main) return facts;
   const auto exif_at = whole(main->number(main->directories()[0], kExif));
-  const std::optional<Tiff> exif = exif_at ? tiff_from(read_at, *exif_at) : std::nullopt;
+  const auto read_from_main = [&main](std::uint64_t offset, std::span<std::uint8_t> bytes) {
+    return main->read_at(offset, bytes);
+  };
+  const std::optional<Tiff> exif = exif_at ? tiff_from(read_from_main, *exif_at) : std::nullopt;
 
   const Directories tags{*main, exif};
   read_time(tags, facts);
+  facts.model = tags.text(kModel).value_or("");
+  facts.lens = tags.text(kLensModel).value_or("");
+  const double orientation = main->number(main->directories()[0], kOrientation).value_or(1);
+  if (orientation >= 1 && orientation <= 8) facts.orientation = static_cast<int>(orientation);
   facts.image_number = whole(tags.number(kImageNumber));
   if (!facts.image_number) facts.image_number = nikon_shutter_count(read_at, exif);
   facts.exposure_us = 1e6 * at_least_0(tags.number(kExposureTime));

@@ -11,7 +11,7 @@
 
 namespace weft::capture {
 
-/// What a photograph says of itself, in its own header. What it does not say is empty or 0.
+/// What a photograph says of itself: in the header of a TIFF or a raw, in the EXIF of a JPEG or a PNG. What it does not say is empty or 0.
 struct PhotographFacts {
   /// By its content: "dng", "nef", "cr2", "arw", "pef"; "cr3", "rw2", "orf", "raf", "crw", "mrw", "x3f", raws
   /// of which nothing else is read; "tif", "jpg"; empty: none of these.
@@ -26,6 +26,8 @@ struct PhotographFacts {
   double exposure_us = 0;
   double iso = 0;
   double f_number = 0;
+  std::string model, lens;
+  int orientation = 1;  ///< how stored rows are to be shown (TIFF 6.0, tag 274), 1 to 8; 1: as they are
 };
 
 /// Whether this ending is that of a raw file whose header is read.

@@ -8,9 +8,13 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTileDescriptionAttribute.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <set>
+#include <utility>
 
 #include "core/image_io/exr_channels.h"
 #include "core/image_io/image_source.h"
@@ -19,6 +23,8 @@ namespace weft {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kMostPixels = 1e12;
 
 /// How often larger than its file the pixels of an EXR can be, with room above what a constant image gives.
 double most_expansion(Imf::Compression compression) {
@@ -31,6 +37,26 @@ double stored_bytes(const Imf::Header& header, double pixels) {
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
     bytes += c.channel().type == Imf::HALF ? 2 : 4;
   return bytes * pixels;
+}
+
+std::vector<std::string> channels_of(const Imf::Header& header) {
+  std::vector<std::string> names;
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) names.emplace_back(c.name());
+  return in_usual_order(std::move(names));
+}
+
+/// Whether channels are colours, of a layer or of none, or grey.
+bool is_of_light(const std::vector<std::string>& channels) {
+  return channels.size() == 1 || std::ranges::any_of(channels, [](const std::string& name) {
+           return name == "R" || name == "Y" || name.ends_with(".R");
+         });
+}
+
+/// Width and height of the data window, which may be none.
+std::array<double, 2> size_of(const Imf::Header& header) {
+  const Imath::Box2i& window = header.dataWindow();
+  return {1.0 + window.max.x - static_cast<double>(window.min.x),
+          1.0 + window.max.y - static_cast<double>(window.min.y)};
 }
 
 /// Why such an image is not read, or nothing.
@@ -72,17 +98,21 @@ ImageFileInfo info_of(const Imf::Header& header, Size size) {
   info.size = size;
   info.type = SampleType::kHalf;
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
-    info.channels.emplace_back(c.name());
     if (c.channel().type != Imf::HALF) info.type = SampleType::kFloat;
   }
-  info.channels = in_usual_order(std::move(info.channels));
+  info.channels = channels_of(header);
   info.format = "openexr";
+  const Imath::V2i begin = header.dataWindow().min - header.displayWindow().min;
+  info.origin = {begin.x, begin.y};
   info.attributes = attributes_of(header);
   if (Imf::hasXDensity(header)) {
     const double density = static_cast<double>(Imf::xDensity(header));
     info.pitch_mm = pitch_of_density(density, density * static_cast<double>(header.pixelAspectRatio()), 25.4);
   }
-  info.color = Imf::hasChromaticities(header) ? ColorSpace::kLinearColor : ColorSpace::kData;
+  if (Imf::hasChromaticities(header)) {
+    info.color = ColorSpace::kLinearColor;
+    info.color_by = "its chromaticities";
+  }
   return info;
 }
 
@@ -109,24 +139,27 @@ class ExrSource : public ImageSource {
   explicit ExrSource(const fs::path& file) : file_(file.c_str(), exr_threads()) {}
 
   std::string open(double file_bytes) {
-    const Imf::Header& header = file_.header(0);
-    const Imath::Box2i& window = header.dataWindow();
-    const double width = 1.0 + window.max.x - static_cast<double>(window.min.x);
-    const double height = 1.0 + window.max.y - static_cast<double>(window.min.y);
-    std::string why = objection(header, width, height, file_bytes);
-    if (why.empty()) info_ = info_of(header, {static_cast<int>(width), static_cast<int>(height)});
-    return why;
+    ImageFileInfo parts;
+    part_ = choose_part(pictures(), parts);
+    const Imf::Header& header = file_.header(part_);
+    const std::array<double, 2> size = size_of(header);
+    std::string why = objection(header, size[0], size[1], file_bytes);
+    if (!why.empty()) return why;
+    info_ = info_of(header, {static_cast<int>(size[0]), static_cast<int>(size[1])});
+    info_.alike = std::move(parts.alike);
+    info_.remarks = std::move(parts.remarks);
+    return "";
   }
 
   /// OpenEXR holds a row of tiles.
   double scratch_bytes() const override {
-    const Imf::Header& header = file_.header(0);
+    const Imf::Header& header = file_.header(part_);
     const double rows = header.hasTileDescription() ? header.tileDescription().ySize : 0;
     return (1 << 20) + 4.0 * static_cast<double>(info_.channels.size()) * rows * info_.size.width;
   }
 
   std::string read(Image<float>& planes) override {
-    Imf::InputPart part(file_, 0);
+    Imf::InputPart part(file_, part_);
     const Imath::Box2i& window = part.header().dataWindow();
     const Imf::ChannelList& channels = part.header().channels();
     Imf::FrameBuffer frame;
@@ -142,7 +175,27 @@ class ExrSource : public ImageSource {
   }
 
  private:
+  /// The parts that may be a picture, where there is more than one.
+  std::vector<PicturePart> pictures() const {
+    std::vector<PicturePart> found;
+    for (int i = 0; i < file_.parts(); ++i) {
+      const Imf::Header& header = file_.header(i);
+      const std::vector<std::string> channels = channels_of(header);
+      const bool is_deep = header.hasType() && Imf::isDeepData(header.type());
+      const std::array<double, 2> size = size_of(header);
+      if (is_deep || !is_of_light(channels) || size[0] < 1 || size[1] < 1 || size[0] * size[1] > kMostPixels)
+        continue;
+      const std::string name = header.hasName() ? fmt::format(" \"{}\"", header.name()) : "";
+      found.push_back({i,
+                       {static_cast<int>(size[0]), static_cast<int>(size[1])},
+                       fmt::format("part {}{}, {} x {} pixels of {}", i + 1, name, size[0], size[1],
+                                   fmt::join(channels, ", "))});
+    }
+    return found;
+  }
+
   Imf::MultiPartInputFile file_;
+  int part_ = 0;
 };
 
 }  // namespace

@@ -5,8 +5,11 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
@@ -31,21 +34,36 @@ constexpr std::array kSignatures = {
     Signature{"MM\0+"sv, open_tiff},           Signature{"\x89PNG\r\n\x1a\n"sv, open_png},
     Signature{"\xff\xd8\xff"sv, open_jpeg}};
 
-// Asked for beforehand: the rows may all be there and yet something is missing.
-constexpr std::string_view kPngEnd = "\0\0\0\0IEND\xae\x42\x60\x82"sv;
-
-bool ends_in(std::ifstream& in, std::string_view wanted) {
-  std::string last(wanted.size(), ' ');
+// How many bytes follow the chunk that ends a PNG, by the lengths of its chunks; nothing where it has no end,
+// since the rows may all be there and yet something is missing.
+std::optional<std::uintmax_t> bytes_behind_png(std::ifstream& in, std::uintmax_t file_bytes) {
+  constexpr std::uintmax_t kSignature = 8, kAroundData = 12;
+  std::array<unsigned char, 8> chunk = {};
   in.clear();
-  in.seekg(-static_cast<std::streamoff>(last.size()), std::ios::end);
-  in.read(last.data(), static_cast<std::streamsize>(last.size()));
-  return in.good() && last == wanted;
+  for (std::uintmax_t at = kSignature; at + kAroundData <= file_bytes;) {
+    in.seekg(static_cast<std::streamoff>(at));
+    if (!in.read(reinterpret_cast<char*>(chunk.data()), chunk.size())) return std::nullopt;
+    const std::uintmax_t length = std::uintmax_t{chunk[0]} << 24 | std::uintmax_t{chunk[1]} << 16 |
+                                  std::uintmax_t{chunk[2]} << 8 | chunk[3];
+    at += length + kAroundData;
+    if (std::memcmp(&chunk[4], "IEND", 4) == 0)
+      return at <= file_bytes ? std::optional(file_bytes - at) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+Opened open_whole_png(std::ifstream& in, const fs::path& file, std::uintmax_t file_bytes) {
+  const std::optional<std::uintmax_t> behind = bytes_behind_png(in, file_bytes);
+  if (!behind) return bad_image(file, "its end is missing");
+  Opened source = open_png(file);
+  if (source && *behind > 0) (*source)->remark(fmt::format("{} bytes behind its end", *behind));
+  return source;
 }
 
 /// By its first bytes: its ending may say anything.
 Opened open_image(const fs::path& file) {
   std::error_code failed;
-  static_cast<void>(fs::file_size(file, failed));  // of a folder neither
+  const std::uintmax_t bytes = fs::file_size(file, failed);  // a folder has none
   if (failed) return cannot_read(file, failed.value());
   std::ifstream in(file, std::ios::binary);
   if (!in) return cannot_read(file, errno);
@@ -55,7 +73,7 @@ Opened open_image(const fs::path& file) {
   if (start.empty()) return bad_image(file, "it is empty");
   for (const Signature& signature : kSignatures) {
     if (!start.starts_with(signature.bytes)) continue;
-    if (signature.open == open_png && !ends_in(in, kPngEnd)) return bad_image(file, "its end is missing");
+    if (signature.open == open_png) return open_whole_png(in, file, bytes);
     in.close();
     return signature.open(file);
   }
@@ -80,6 +98,18 @@ Result<LoadedImage> read_pixels(ImageSource& source, const fs::path& file) {
 }
 
 }  // namespace
+
+int choose_part(std::vector<PicturePart> parts, ImageFileInfo& info) {
+  if (parts.empty()) return 0;
+  const auto largest = std::ranges::max_element(parts, {}, [](const PicturePart& p) { return p.size.pixels(); });
+  const PicturePart chosen = *largest;
+  parts.erase(largest);
+  for (const PicturePart& other : parts) {
+    if (other.size.pixels() == chosen.size.pixels()) info.alike.push_back(other.words);
+  }
+  if (!parts.empty() || chosen.number > 0) info.remarks.push_back("all but " + chosen.words);
+  return chosen.number;
+}
 
 Error bad_image(const fs::path& file, std::string why) {
   return {ErrorKind::kBadData, "cannot read the image", file.string(), std::move(why),

@@ -27,6 +27,8 @@ class ImageSource {
   /// Fills a plane a channel, once. Returns why it failed, or nothing.
   virtual std::string read(Image<float>& planes) = 0;
 
+  void remark(std::string words) { info_.remarks.push_back(std::move(words)); }
+
  protected:
   ImageFileInfo info_;
 };
@@ -36,6 +38,15 @@ Result<std::unique_ptr<ImageSource>> open_exr(const std::filesystem::path& file)
 Result<std::unique_ptr<ImageSource>> open_tiff(const std::filesystem::path& file);
 Result<std::unique_ptr<ImageSource>> open_png(const std::filesystem::path& file);
 Result<std::unique_ptr<ImageSource>> open_jpeg(const std::filesystem::path& file);
+
+/// One of several pictures in a file, and where it stands there, from 0.
+struct PicturePart {
+  int number = 0;
+  Size size;
+  std::string words = {};  ///< "part 2 \"beauty\", 96 x 72: R, G, B"
+};
+/// The number of the largest, and what others are as large (ImageFileInfo::alike, remarks) go into `info`.
+int choose_part(std::vector<PicturePart> parts, ImageFileInfo& info);
 
 /// An image that is damaged.
 Error bad_image(const std::filesystem::path& file, std::string why);

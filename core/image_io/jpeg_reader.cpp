@@ -111,6 +111,7 @@ class JpegSource : public ImageSource {
     const ColorSpace told =
         profile == nullptr ? ColorSpace::kData : color_of_profile({profile, std::size_t{bytes}});
     std::free(profile);  // NOLINT: libjpeg takes it from malloc
+    if (told != ColorSpace::kData) info_.color_by = "its ICC profile";
     return told == ColorSpace::kData ? ColorSpace::kSrgb : told;
   }
 

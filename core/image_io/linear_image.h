@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <string>
 
 #include "core/base/result.h"
 #include "core/image/image.h"
@@ -38,7 +39,7 @@ enum class NotNumbers {
 /// Whether a file is a developed photograph (TIFF, PNG, EXR, JPEG by its extension), not a raw frame.
 bool is_linear_image(const std::filesystem::path& file);
 
-/// Header of a photograph that can be solved: one, three or four channels.
+/// Header of a photograph: its only picture, whose channels are those of light (light_channels()).
 Result<ImageFileInfo> read_linear_image_info(const std::filesystem::path& file);
 
 /// Reads a photograph as readings (core/rig/radiometry.h): planes R, G, B, 1.0 is full scale. Grey is
@@ -50,8 +51,23 @@ Result<Image<float>> read_linear_image(const std::filesystem::path& file, Transf
 /// then refuses.
 Transfer transfer_of(const ImageFileInfo& info);
 
+/// Where R, G and B stand in a file; thrice the same of a grey one.
+using LightChannels = std::array<std::size_t, 3>;
+/// By their names: R, G, B of the picture or of its only layer that has them, Y, or a channel that is alone.
+/// kBadData where that is not clear, or where they are no light: directions, luminance with chroma, counts
+/// behind colour filters. `where` is the file's name for messages.
+Result<LightChannels> light_channels(const ImageFileInfo& info, const std::string& where);
+
+/// Which way stored rows are to be shown: the tag Orientation of TIFF 6.0 and EXIF, 1 to 8.
+Size shown_size(Size stored, int orientation);
+Image<float> as_shown(Image<float> stored, int orientation);
+/// "as they are", "turned by half", as what is done to show them.
+const char* orientation_words(int orientation);
+
 /// image -= dark, sample by sample.
 void subtract(Image<float>& image, const Image<float>& dark);
+/// image += light.
+void brighten(Image<float>& image, double light);
 /// image *= factor.
 void scale(Image<float>& image, double factor);
 

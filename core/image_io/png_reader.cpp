@@ -128,12 +128,15 @@ class PngSource : public ImageSource {
     png_uint_32 bytes = 0;
     int compression = 0, intent = 0;
     if (png_get_iCCP(png_, header_, &name, &compression, &profile, &bytes) != 0) {
+      info_.color_by = "its profile in iCCP";
       const ColorSpace told = color_of_profile({profile, bytes});
       if (told != ColorSpace::kData) return told;
     }
+    info_.color_by = "its chunk sRGB";
     if (png_get_sRGB(png_, header_, &intent) != 0) return ColorSpace::kSrgb;
     double encoding = 0;
     const bool is_told = png_get_gAMA(png_, header_, &encoding) != 0 && encoding > 0;
+    info_.color_by = is_told ? "its chunk gAMA" : "";
     return is_told ? color_of_gamma(1 / encoding) : ColorSpace::kData;
   }
 

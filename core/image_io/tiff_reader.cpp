@@ -129,6 +129,9 @@ void unpack_indices(const std::byte* row, int bits, std::size_t count, std::vect
 
 namespace fs = std::filesystem;
 
+constexpr int kMostPages = 1000;  // that are looked at
+constexpr std::uint32_t kMostAcross = std::numeric_limits<int>::max() / 2;
+
 constexpr std::array<std::pair<std::uint32_t, const char*>, 12> kTexts = {
     {{TIFFTAG_IMAGEDESCRIPTION, "ImageDescription"},
      {TIFFTAG_ARTIST, "Artist"},
@@ -168,8 +171,10 @@ class TiffSource : public ImageSource {
  public:
   explicit TiffSource(const fs::path& file) : tiff_(TIFFOpenExt(file.c_str(), "rm", words_.options())) {}
 
-  std::string open() {
+  std::string open(const fs::path& file) {
     if (!tiff_ || !words_.complaint().empty()) return words_.reason();
+    if (TIFFLastDirectory(tiff_.get()) == 0) choose_page(file);
+    if (!words_.complaint().empty()) return words_.reason();
     if (std::string why = read_layout(); !why.empty()) return why;
     if (std::string why = objection(); !why.empty()) return why;
     read_meaning();
@@ -188,6 +193,7 @@ class TiffSource : public ImageSource {
   }
 
  private:
+  void choose_page(const fs::path& file);
   std::string read_layout();
   std::string objection();
   void read_meaning();
@@ -221,13 +227,37 @@ class TiffSource : public ImageSource {
   std::vector<std::uint16_t> indices_;
 };
 
+/// Goes to the page that is the picture. Another page that is damaged matters to nobody, so that this one
+/// looks at them by itself.
+void TiffSource::choose_page(const fs::path& file) {
+  TiffWords words;
+  const TiffFile pages(TIFFOpenExt(file.c_str(), "rm", words.options()));
+  if (!pages) return;
+  TIFF* tiff = pages.get();
+  std::vector<PicturePart> found;
+  for (int page = 0; page < kMostPages; ++page) {
+    const auto width = field_or<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH, 0);
+    const auto height = field_or<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH, 0);
+    const auto kind = field_or<std::uint32_t>(tiff, TIFFTAG_SUBFILETYPE, 0);
+    const bool is_picture = (kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0 && width > 0 &&
+                            height > 0 && width < kMostAcross && height < kMostAcross;
+    if (is_picture)
+      found.push_back({page,
+                       {static_cast<int>(width), static_cast<int>(height)},
+                       fmt::format("page {}, {} x {} pixels", page + 1, width, height)});
+    if (TIFFReadDirectory(tiff) == 0) break;
+  }
+  const int chosen = choose_part(std::move(found), info_);
+  if (chosen > 0) TIFFSetDirectory(tiff_.get(), static_cast<tdir_t>(chosen));
+}
+
 std::string TiffSource::read_layout() {
   TIFF* tiff = tiff_.get();
   const auto width = field_or<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH, 0);
   const auto height = field_or<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH, 0);
   samples_ = field_or<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
-  constexpr std::uint32_t kMost = std::numeric_limits<int>::max() / 2;
-  if (width < 1 || height < 1 || samples_ < 1 || width > kMost || height > kMost) return "it has no pixels";
+  if (width < 1 || height < 1 || samples_ < 1 || width > kMostAcross || height > kMostAcross)
+    return "it has no pixels";
   info_.size = {static_cast<int>(width), static_cast<int>(height)};
   is_separate_ =
       samples_ > 1 && field_or<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG, 1) == PLANARCONFIG_SEPARATE;
@@ -314,6 +344,7 @@ void TiffSource::name_channels() {
 void TiffSource::read_words() {
   TIFF* tiff = tiff_.get();
   info_.format = "tiff";
+  info_.is_mosaic = photometric_ == PHOTOMETRIC_CFA;
   info_.color = color();
   ImageAttributes texts;
   for (const auto& [tag, name] : kTexts) {
@@ -331,7 +362,9 @@ ColorSpace TiffSource::color() {
   std::uint32_t bytes = 0;
   const std::uint8_t* profile = nullptr;
   if (TIFFGetField(tiff_.get(), TIFFTAG_ICCPROFILE, &bytes, &profile) == 0) return ColorSpace::kData;
-  return color_of_profile({profile, bytes});
+  const ColorSpace told = color_of_profile({profile, bytes});
+  if (told != ColorSpace::kData) info_.color_by = "its ICC profile";
+  return told;
 }
 
 std::string TiffSource::read_raster(Image<float>& planes) {
@@ -444,7 +477,7 @@ std::string TiffWords::reason() const {
 
 Result<std::unique_ptr<ImageSource>> open_tiff(const fs::path& file) {
   auto source = std::make_unique<TiffSource>(file);
-  if (std::string why = source->open(); !why.empty()) return bad_image(file, std::move(why));
+  if (std::string why = source->open(file); !why.empty()) return bad_image(file, std::move(why));
   return std::unique_ptr<ImageSource>(std::move(source));
 }
 

@@ -29,6 +29,10 @@ void describe(Fields& fields, SolveInput& i) {
   fields.object({"pose", "Of a cloth that does not lie flat", {}, kUnlessEmpty}, i.pose);
   fields.list({"photographs", "Under distant lights", {}, kUnlessEmpty}, i.photographs);
   fields.value({"transfer", "How their values follow light", {}, kUnlessEmpty}, i.transfer);
+  fields.value({"orientation", "Of TIFF and EXIF, 2 to 8, by which they were turned", {}, kUnlessEmpty},
+               i.orientation);
+  fields.value({"dark", "SHA-256 of the one with all lamps off", {}, kUnlessEmpty}, i.dark);
+  fields.value({"ambient", "Light that was taken from all, a share of full scale", {}, kUnlessEmpty}, i.ambient);
   fields.value({"mask", "SHA-256 of their mask", {}, kUnlessEmpty}, i.mask);
   fields.value({"second_pose", "The same of a session in another pose", {}, kUnlessEmpty}, i.second_pose);
 }

@@ -6,8 +6,10 @@
 #include "solve/conditions/bad_photosites.h"
 #include "solve/conditions/brackets.h"
 #include "solve/conditions/drift.h"
+#include "solve/conditions/full_scale.h"
 #include "solve/conditions/led_gains.h"
 #include "solve/conditions/lens_glare.h"
+#include "solve/conditions/questioned_lights.h"
 #include "solve/conditions/tilted_cloth.h"
 #include "solve/conditions/useless_lights.h"
 
@@ -15,8 +17,9 @@ namespace weft::solve {
 namespace {
 
 // In the order in which they must be met: each is found in photographs that those before it have put right.
-constexpr std::array kConditions = {tell_veil,    mend_photosites, add_brackets, drop_useless_lights,
-                                    follow_drift, lay_level,       follow_cloth};
+constexpr std::array kConditions = {tell_veil,           mend_photosites, add_brackets,
+                                    drop_useless_lights, follow_drift,    lay_level,
+                                    follow_cloth,        find_full_scale, question_lights};
 
 }  // namespace
 

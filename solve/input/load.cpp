@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -79,6 +80,30 @@ Result<std::vector<Photosite>> photosites_named_by(const std::filesystem::path& 
   return named;
 }
 
+Result<std::optional<Image<std::uint8_t>>> mask_of(const SolvePlan& plan) {
+  if (plan.mask.empty()) return std::optional<Image<std::uint8_t>>();
+  Result<Image<std::uint8_t>> mask = read_mask(plan.mask, plan.size);
+  if (!mask) return std::move(mask).error();
+  return std::optional(std::move(*mask));
+}
+
+// What a sensor of today has where no calibration measured it.
+Response usual_response(const RawFrame& frame) {
+  constexpr double kFullWell = 40000, kReadNoise = 4;  // electrons at ISO 100
+  const double iso = frame.shot.iso > 0 ? frame.shot.iso : 100;
+  Response response;
+  response.electrons_per_count =
+      kFullWell / (static_cast<double>(frame.white) - static_cast<double>(frame.black[0][0])) * 100 / iso;
+  response.read_noise_counts = std::max(kReadNoise / response.electrons_per_count, std::sqrt(1.0 / 12));
+  return response;
+}
+
+// As a photograph says, or one that it is compared with.
+Radiometry::Exposure exposure_of(const Shot& shot) {
+  constexpr double kSecond_us = 1e6, kIso = 100;
+  return {shot.exposure_us > 0 ? shot.exposure_us : kSecond_us, shot.iso > 0 ? shot.iso : kIso};
+}
+
 // Counts of raw frames.
 Result<void> read_mosaics(const SolvePlan& plan, const JobContext& context, Photographs& photographs,
                           FramesBeside& beside) {
@@ -94,9 +119,12 @@ Result<void> read_mosaics(const SolvePlan& plan, const JobContext& context, Phot
   std::vector<RawFrame> lit = take(*frames, plan.lit.size());
   std::optional<RawFrame> dark;
   if (plan.dark) dark = std::move(take(*frames, 1).front());
-  const Shot& first = plan.lit.front();
-  Mosaics mosaics(std::move(lit), std::move(dark), *plan.calibration.response,
-                  {first.exposure_us, first.iso});
+  const Response response =
+      plan.calibration.response ? *plan.calibration.response : usual_response(lit.front());
+  Mosaics mosaics(std::move(lit), std::move(dark), response, exposure_of(plan.lit.front()));
+  Result<std::optional<Image<std::uint8_t>>> mask = mask_of(plan);
+  if (!mask) return std::move(mask).error();
+  mosaics.inside = std::move(*mask);
   beside.repeats = mosaics.alike(take(*frames, plan.repeats.size()));
   if (!plan.parallel.empty()) photographs.parallel = mosaics.alike(take(*frames, plan.parallel.size()));
   beside.brackets = std::move(*frames);
@@ -120,16 +148,14 @@ void hide_outside(const Image<std::uint8_t>& mask, Image<float>& rgb) {
 // Readings of photographs that somebody developed: of a session over the light that its exposure gathers.
 Result<void> read_developed(const SolvePlan& plan, const JobContext& context, Photographs& photographs,
                             FramesBeside& beside) {
-  std::optional<Image<std::uint8_t>> mask;
-  if (!plan.mask.empty()) {
-    Result<Image<std::uint8_t>> read = read_mask(plan.mask, plan.size);
-    if (!read) return std::move(read).error();
-    mask = std::move(*read);
-  }
+  const Result<std::optional<Image<std::uint8_t>>> mask = mask_of(plan);
+  if (!mask) return mask.error();
   const auto read_one = [&](const Shot& shot) -> Result<Image<float>> {
     if (plan.is_of_rig) return capture::read_developed_shot(plan.session, shot);
     Result<Image<float>> image = read_linear_image(plan.session.path_of(shot), plan.transfer, plan.clipped);
-    if (image && mask) hide_outside(*mask, *image);
+    if (!image) return image;
+    *image = as_shown(std::move(*image), plan.orientation);
+    if (*mask) hide_outside(**mask, *image);
     return image;
   };
   Result<std::vector<Image<float>>> frames = read_frames<Image<float>>(plan.frames(), context, read_one);
@@ -140,6 +166,7 @@ Result<void> read_developed(const SolvePlan& plan, const JobContext& context, Ph
   for (auto* list : {&lit, &*frames}) {
     for (Image<float>& image : *list) {
       if (!dark.empty()) subtract(image, dark.front());
+      if (plan.ambient != 0) brighten(image, -plan.ambient);
       if (plan.is_of_rig) scale(image, 1 / (first.exposure_us * 1e-6 * first.iso / 100));
     }
   }

@@ -8,6 +8,7 @@
 
 #include "core/base/files.h"
 #include "solve/input/light_list.h"
+#include "solve/input/look_at_pictures.h"
 #include "solve/input/photo_mask.h"
 
 namespace weft::solve {
@@ -67,36 +68,6 @@ fs::path name_of_source(const PhotoOptions& options) {
   return source.has_filename() ? source.stem() : source.parent_path().filename();
 }
 
-// Size and transfer of all, from their headers, and what the id is made of.
-Result<void> look_at_photos(Transfer wanted, SolvePlan& plan) {
-  const std::vector<DistantLight>& lights = std::get<DistantLights>(*plan.calibration.lights).lights;
-  for (std::size_t k = 0; k < plan.lit.size(); ++k) {
-    const fs::path file = plan.session.path_of(plan.lit[k]);
-    const Result<ImageFileInfo> info = read_linear_image_info(file);
-    if (!info) return info.error();
-    const Transfer transfer = wanted == Transfer::kAuto ? transfer_of(*info) : wanted;
-    if (k == 0) {
-      plan.size = info->size;
-      plan.transfer = transfer;
-    }
-    // Each by its own kind, where they differ.
-    if (transfer != plan.transfer) plan.transfer = Transfer::kAuto;
-    if (info->size != plan.size) {
-      return Error{ErrorKind::kBadData, "photographs differ in size", file.string(),
-                   fmt::format("{} x {} pixels, the first has {} x {}", info->size.width, info->size.height,
-                               plan.size.width, plan.size.height),
-                   "use photographs of one camera that was not moved"};
-    }
-    const Result<std::string> digest = sha256_of_file(file);
-    if (!digest) return digest.error();
-    const DistantLight& light = lights[static_cast<std::size_t>(plan.lit[k].led) - 1];
-    plan.input.photographs.push_back(
-        {file.filename().string(), *digest, light.direction, light.irradiance_rgb});
-  }
-  plan.input.transfer = name_of(plan.transfer);
-  return {};
-}
-
 Result<void> look_at_mask(SolvePlan& plan) {
   if (plan.mask.empty()) return {};
   if (const auto mask = read_mask(plan.mask, plan.size); !mask) return mask.error();
@@ -112,6 +83,11 @@ Result<SolvePlan> plan_photos(const PhotoOptions& options) {
   Result<SolvePlan> plan = read_photos(options);
   if (!plan) return plan;
   plan->clipped = options.clipped;
+  plan->ambient = options.ambient;
+  if (Result<void> laid = lay_lights(options.flip, options.folder / options.light_file,
+                                     std::get<DistantLights>(*plan->calibration.lights));
+      !laid)
+    return std::move(laid).error();
   if (Result<void> chosen = choose_photos(options.lights, *plan); !chosen) return std::move(chosen).error();
   if (plan->lit.size() < 3) {
     return Error{ErrorKind::kBadData, "too few lights",
@@ -119,8 +95,7 @@ Result<SolvePlan> plan_photos(const PhotoOptions& options) {
                  fmt::format("{} photographs; a normal and an albedo are three unknowns", plan->lit.size()),
                  "give at least three photographs under different lights"};
   }
-  if (Result<void> looked = look_at_photos(options.transfer, *plan); !looked)
-    return std::move(looked).error();
+  if (Result<void> looked = look_at_pictures(options, *plan); !looked) return std::move(looked).error();
   if (Result<void> looked = look_at_mask(*plan); !looked) return std::move(looked).error();
   const std::string name = name_of_source(options).string();
   plan->where = plan->session.fabric = name;

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <vector>
 
 #include "core/base/result.h"
 #include "core/image_io/linear_image.h"
+#include "solve/input/light_axes.h"
 #include "solve/photographs/solve_plan.h"
 
 namespace weft::solve {
+
+/// Whether directions of lights are those of the picture as it is shown, by its tag Orientation, or as its rows
+/// are stored.
+enum class PictureOrientation { kShown, kStored };
+inline constexpr std::array<const char*, 2> kPictureOrientationNames = {"shown", "stored"};
 
 /// Where photographs under distant lights and their lights are: `folder`, `light_file` or both are named.
 struct PhotoOptions {
@@ -19,6 +26,10 @@ struct PhotoOptions {
   std::filesystem::path light_file;
   bool skips_missing = false;  ///< leaves out lights whose photograph is not there
   Transfer transfer = Transfer::kAuto;
+  PictureOrientation orientation = PictureOrientation::kShown;
+  LightFlip flip = LightFlip::kNone;
+  std::filesystem::path dark;  ///< the same with all lamps off; empty: none
+  double ambient = 0;          ///< light that is in all of them, a share of full scale
   Clipped clipped = Clipped::kMark;
   std::vector<int> lights;  ///< numbers from 1; empty: all
 };

@@ -2,6 +2,7 @@
 #include "solve/photographs/photographs.h"
 
 #include <algorithm>
+#include <limits>
 #include <ranges>
 #include <utility>
 
@@ -54,6 +55,11 @@ std::vector<View<const float>> Mosaics::readings(std::size_t k, Rect part, View<
   radiometry.read(frames[k].counts.plane(), part, out);
   if (!brackets.empty() && !brackets[k].empty()) add_brackets(k, part, out);
   if (!veils.empty()) veils[k].take_off(part, out);
+  for (int y = part.y0; inside && y < part.y1; ++y) {
+    for (int x = part.x0; x < part.x1; ++x) {
+      if ((*inside)(x, y) == 0) out(x - part.x0, y - part.y0) = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
   return {out};
 }
 

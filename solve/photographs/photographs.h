@@ -22,6 +22,7 @@
 #include "core/rig/radiometry.h"
 #include "core/rig/veil.h"
 #include "core/solve/solve_parts.h"
+#include "core/solve/verdict.h"
 #include "solve/photographs/gloss_samples.h"
 #include "solver/method.h"
 
@@ -72,6 +73,7 @@ struct Mosaics {
   std::vector<std::vector<Bracket>> brackets;  ///< of each frame; empty where there are none at all
   std::vector<Photosite> replaced;             ///< sorted: their counts are what their neighbours say
   std::vector<VeilOverFrame> veils;            ///< of each frame, taken off; empty where the lens has none
+  std::optional<Image<std::uint8_t>> inside;   ///< 1 where the cloth is; none: everywhere
 
   std::size_t count() const { return frames.size(); }
   Planes planes() const { return {1, radiometry.cfa()}; }
@@ -97,6 +99,8 @@ std::vector<View<const float>> readings_of(const Frames& frames, std::size_t k, 
 struct Conditions {
   ConditionFacts facts;               ///< as solve.json has them
   std::vector<std::string> warnings;  ///< a sentence each
+  std::vector<Verdict> doubts;        ///< whether lights and values are what they are taken for
+  std::vector<std::string> assumed;   ///< of photographs, as of SolvePlan
 };
 
 /// What a solve starts from, in memory: K photographs of one cloth, photograph k lit by light k of the field

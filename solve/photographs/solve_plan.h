@@ -30,6 +30,9 @@ struct SolvePlan {
   std::vector<Shot> brackets;  ///< shots of LEDs in `lit` whose exposure ratio the calibration measured
   Size size;
   bool raw = true;                        ///< mosaics; else linear TIFF, PNG or EXR
+  int orientation = 1;                    ///< that developed photographs are turned by (as_shown())
+  double ambient = 0;                     ///< that is taken from developed photographs, a share of full scale
+  bool transfer_is_custom = false;        ///< neither the files nor a person said how values follow light
   std::filesystem::path mask;             ///< where the cloth is; empty: every pixel counts
   Transfer transfer = Transfer::kLinear;  ///< kAuto: files differ, and each is taken by its own kind
   Clipped clipped = Clipped::kMark;

@@ -408,6 +408,21 @@ Verdict unexplained(const PhotographsSummary& photographs, std::optional<solver:
   return verdict;
 }
 
+// Lamps that stand near brighten the side of the picture that is theirs, in every photograph; the plane that
+// is left over each of them tells it. A lamp or two may have a cause of its own.
+std::optional<Verdict> near_lights(const PhotographsSummary& photographs) {
+  constexpr double kLeastShare = 0.1;  // of the residual's variance
+  std::vector<double> shares;
+  for (const solver::LightEvidence& light : photographs.diagnosis.lights) shares.push_back(light.gradient_share);
+  if (photographs.of_session || photographs.are_near || shares.empty()) return std::nullopt;
+  if (photographs.diagnosis.residual < kMisfit || !(lower_quantile(shares, 0.5) > kLeastShare)) return std::nullopt;
+  return Verdict{"LIGHTS_ARE_NEAR",
+                 fmt::format("All photographs are brighter towards one side than lamps far away make them: that "
+                             "explains {} percent of what is left over in half of them",
+                             percent_words(lower_quantile(shares, 0.5))),
+                 "give positions of the lamps in mm and --mm-per-pixel, or move the lamps farther away"};
+}
+
 }  // namespace
 
 bool may_have_moved_far(const PhotographsSummary& photographs) {
@@ -418,7 +433,7 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
                                  const std::optional<LeftOutFacts>& check,
                                  std::optional<solver::Level> level) {
   const Speaker say = {photographs};
-  std::vector<Verdict> verdicts;
+  std::vector<Verdict> verdicts = photographs.doubts;
   for (const FaultKind kind : {FaultKind::kExchanged, FaultKind::kDead, FaultKind::kGain}) {
     for (const Fault& fault : photographs.diagnosis.faults) {
       const bool matters = fault.kind != FaultKind::kGain || fault.moved_deg >= kLeastWarned_deg;
@@ -433,6 +448,7 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
       verdicts.push_back(*unfit);
   }
   const bool shines = is_dominated || photographs.glossy_share > kMostlyGlossy;
+  if (std::optional<Verdict> near = near_lights(photographs)) verdicts.push_back(std::move(*near));
   if (verdicts.empty() && !shines && !photographs.shifts.found && misfit_of(photographs) > kMisfit)
     verdicts.push_back(unexplained(photographs, level));
   if (is_dominated) {

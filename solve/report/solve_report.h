@@ -83,6 +83,8 @@ struct PhotographsSummary {
   double glossy_share = 0;               ///< of the blocks, solved with a lobe that was measured
   double outshining = 0;                 ///< share of pixels, solver/diagnosis/highlights.h
   std::vector<std::string> warnings;     ///< a sentence each, said when the photographs were read
+  std::vector<Verdict> doubts;           ///< whether lights and values are what they are taken for
+  bool are_near = false;                 ///< lights are solved as near ones
   SessionShifts shifts;                  ///< of the photographs as they were read
   std::optional<MovedShots> far_shifts;  ///< where they were looked for
   bool shadow_reach_is_capped = false;

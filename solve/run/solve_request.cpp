@@ -171,6 +171,24 @@ void describe(Fields& fields, SolveRequest& r) {
                          "sRGB), linear, srgb",
                  .said = Said::kAtThisMachine},
                 r.photos.transfer, kTransferNames);
+  fields.choice({.name = "orientation",
+                 .says = "How photographs lie under their lights: shown (turned as their tag says), stored",
+                 .said = Said::kAtThisMachine},
+                r.photos.orientation, solve::kPictureOrientationNames);
+  fields.choice({.name = "flip",
+                 .says = "What is done to the directions of their lights: none, x, y, z or all turned round, left "
+                         "or right by a quarter, exchange (x for y), against (x for -y)",
+                 .said = Said::kAtThisMachine},
+                r.photos.flip, solve::kLightFlipNames);
+  fields.value({.name = "dark",
+                .says = "The same photograph with all lamps off, which is taken from the others",
+                .said = Said::kAtThisMachine},
+               r.photos.dark);
+  fields.value({.name = "ambient",
+                .says = "Light that is in all photographs, a share of full scale",
+                .range = kNotNegative,
+                .said = Said::kAtThisMachine},
+               r.photos.ambient);
   describe_maps(fields, r);
 }
 

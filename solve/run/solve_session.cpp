@@ -154,6 +154,7 @@ class Finish {
 struct Prepared {
   Photographs photographs;
   std::vector<std::string> warnings;
+  std::vector<Verdict> doubts;
   Fullness fullness;         // of the photographs as they were read
   SessionShifts shifts;      // of the photographs too
   std::vector<int> numbers;  // of photographs without a rig, by light
@@ -204,7 +205,7 @@ class Run {
     if (Result<void> ok = describe(*made, prepared->fullness); !ok) return std::move(ok).error();
     if (Result<void> ok = publish(); !ok) return std::move(ok).error();
     seconds_.total = total.lap();
-    return SolveReport{product_.folder, false, std::move(facts_), made->maps.expected(), {}, seconds_};
+    return SolveReport{product_.folder, false, std::move(facts_), made->maps.expected(), seconds_};
   }
 
  private:
@@ -226,6 +227,8 @@ class Run {
     if (!options_.deblur) photographs.spread.reset();
     facts_.conditions = photographs.conditions.facts;
     prepared.warnings = photographs.conditions.warnings;
+    prepared.doubts = photographs.conditions.doubts;
+    std::ranges::copy(photographs.conditions.assumed, std::back_inserter(facts_.assumed));
     prepared.fullness = fullness_of(photographs);
     if (!plan_.is_of_rig) prepared.numbers = plan_.numbers();
     seconds_.read = watch_.lap();
@@ -332,6 +335,7 @@ class Run {
     if (frame.reference) std::ranges::move(warnings_of(*frame.reference), std::back_inserter(warnings));
     PhotographsSummary& summary = made.summary;
     summary = summarize_photographs(prepared.photographs, prepared.numbers, warnings, context_);
+    summary.doubts = prepared.doubts;
     summary.session = plan_.session_name;
     summary.left_out = left_out(plan_.session);
     for (const Shot& shot : plan_.lit) summary.shot_of_led[shot.led] = shot.index;
@@ -457,7 +461,7 @@ Result<SolveReport> solve(const solver::MethodName& method, const SolvePlan& pla
         solve_facts_from_json(**finished, (product.folder / kSolveProduct.document).string());
     if (!facts) return std::move(facts).error();
     if (options.plan.empty() && (*finished)->contains("plan")) end_waiting(product, **finished);
-    return SolveReport{product.folder, true, std::move(*facts), {}, {}, {}};
+    return SolveReport{product.folder, true, std::move(*facts), {}, {}};
   }
   return Run(method, plan, options, context, product).run(std::move(loaded));
 }
@@ -490,9 +494,7 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   photos.clipped = method->keeps_clipped ? Clipped::kKeep : Clipped::kMark;
   const Result<SolvePlan> plan = plan_photos(photos);
   if (!plan) return plan.error();
-  Result<SolveReport> report = solve(*method, *plan, options, context);
-  if (report) report->transfer = plan->transfer;
-  return report;
+  return solve(*method, *plan, options, context);
 }
 
 Result<SolveReport> solve_loaded(Photographs photographs, const SolveOptions& options,

@@ -48,9 +48,8 @@ struct SolveReport {
   std::filesystem::path folder;
   bool was_there = false;  ///< a complete solve of the same inputs and options was found
   SolveFacts facts;
-  ExpectedError expected;            ///< of this run: zero if was_there
-  std::optional<Transfer> transfer;  ///< of photographs, as of SolvePlan
-  SolveSeconds seconds;              ///< of this run: zero if was_there
+  ExpectedError expected;  ///< of this run: zero if was_there
+  SolveSeconds seconds;    ///< of this run: zero if was_there
 };
 
 /// The id that solve_session() gives the solve of this plan.

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// What files of photographs say of themselves, and what is made of it when they are solved.
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/image_io/image_io.h"
+#include "core/image_io/linear_image.h"
+#include "tests/system/samples.h"
+#include "tests/system/workspace.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+void put_number(std::string& bytes, std::uint32_t value, int size, bool big_endian = false) {
+  for (int i = 0; i < size; ++i) {
+    const int byte = big_endian ? size - 1 - i : i;
+    bytes.push_back(static_cast<char>(value >> (8 * byte) & 255));
+  }
+}
+
+// EXIF as a TIFF of one directory: Orientation, and ExposureTime where there is one.
+std::string exif_of(int orientation, std::uint32_t exposure_below = 0) {
+  const bool has_time = exposure_below > 0;
+  std::string exif("II*\0\x08\0\0\0", 8);
+  put_number(exif, has_time ? 2 : 1, 2);
+  const auto field = [&](std::uint32_t tag, std::uint32_t type, std::uint32_t value) {
+    put_number(exif, tag, 2);
+    put_number(exif, type, 2);
+    put_number(exif, 1, 4);
+    put_number(exif, value, 4);
+  };
+  field(274, 3, static_cast<std::uint32_t>(orientation));
+  if (has_time) field(33434, 5, 8 + 2 + 2 * 12 + 4);
+  put_number(exif, 0, 4);
+  if (has_time) {
+    put_number(exif, 1, 4);
+    put_number(exif, exposure_below, 4);
+  }
+  return exif;
+}
+
+// A PNG with a chunk eXIf behind its header.
+void add_exif(const fs::path& file, const std::string& exif) {
+  const std::string png = bytes_of(file);
+  const std::size_t behind_header = 8 + 25;
+  const std::string data = "eXIf" + exif;
+  std::string chunk;
+  put_number(chunk, static_cast<std::uint32_t>(exif.size()), 4, true);
+  chunk += data;
+  const auto sum = crc32(0, reinterpret_cast<const Bytef*>(data.data()), static_cast<uInt>(data.size()));
+  put_number(chunk, static_cast<std::uint32_t>(sum), 4, true);
+  put_bytes(file, png.substr(0, behind_header) + chunk + png.substr(behind_header));
+}
+
+class PhotographHeaders : public testing::Test {
+ protected:
+  PhotographHeaders() {
+    sample_.ending = ".png";
+    sample_.type = SampleType::kUint16;
+    sample_.write(folder_);
+  }
+
+  fs::path photograph(std::size_t light) const { return folder_ / sample_.name_of(light); }
+
+  // Changes the pixels of a photograph.
+  template <typename Change>
+  void change(std::size_t light, const Change& to) const {
+    Result<LoadedImage> read = read_image(photograph(light));
+    ASSERT_TRUE(read) << read.error().message();
+    const Image<float> image = to(std::move(read->planes));
+    const std::array<View<const float>, 3> planes = {image.plane(0), image.plane(1), image.plane(2)};
+    ASSERT_TRUE(write_image(photograph(light), planes, {"R", "G", "B"}, {.type = SampleType::kUint16}));
+  }
+
+  Outcome solve(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"solve", "--photos",      folder_.string(),
+                                          "-o",    maps_.string(), "--no-previews"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_weft(arguments);
+  }
+  double degrees() const {
+    const Outcome run = run_weft({"compare", (maps_ / "normal.exr").string(),
+                                  (folder_ / "normal_gt.exr").string(), "--json", "--quiet"});
+    EXPECT_EQ(run.exit_code, 0) << run.error;
+    return run.exit_code == 0 ? run.json()["mean_deg"].get<double>() : 180;
+  }
+  void expect_refused(const std::vector<std::string>& words, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"solve", "--photos", folder_.string(), "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_refusal(work_, arguments, 65, words, {.folder = work_.path()});
+  }
+
+  Workspace work_;
+  const fs::path folder_ = work_ / "photos", maps_ = work_ / "maps";
+  PhotographSample sample_;
+};
+
+TEST_F(PhotographHeaders, StoredBottomUpTheyAreSolvedAsTheyAreShown) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    change(k, [](Image<float> image) { return as_shown(std::move(image), 4); });
+    add_exif(photograph(k), exif_of(4));
+  }
+  const Outcome run = solve();
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_LT(degrees(), 0.01);
+  EXPECT_NE(run.error.find("orientation 4: mirrored top to bottom"), std::string::npos) << run.error;
+}
+
+TEST_F(PhotographHeaders, OfOneThatIsToBeShownTurnedThePersonDecides) {
+  add_exif(photograph(2), exif_of(6));
+  expect_refused({"photographs differ in orientation", "03.png", "turned right by a quarter", "--orientation"});
+  const Outcome run = solve({"--orientation", "stored"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_LT(degrees(), 0.01);
+}
+
+TEST_F(PhotographHeaders, ExposuresThatDifferAreDividedOut) {
+  for (std::size_t k = 0; k < 6; ++k) sample_.lights[k].irradiance_rgb = {1, 1, 1};
+  sample_.write(folder_);
+  fs::remove(folder_ / "light_intensities.txt");
+  for (std::size_t k = 0; k < 6; ++k) {
+    const double share = k % 2 == 0 ? 1 : 0.5;
+    change(k, [&](Image<float> image) {
+      scale(image, share);
+      return image;
+    });
+    add_exif(photograph(k), exif_of(1, k % 2 == 0 ? 30 : 60));
+  }
+  const Outcome run = solve();
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_LT(degrees(), 0.02);
+  EXPECT_NE(run.error.find("each photograph is divided by its own"), std::string::npos) << run.error;
+}
+
+TEST_F(PhotographHeaders, OneFileUnderTwoLightsIsRefused) {
+  fs::copy_file(photograph(1), photograph(4), fs::copy_options::overwrite_existing);
+  expect_refused({"one photograph is under two lights", "05.png", "02.png", "--lights"});
+}
+
+TEST_F(PhotographHeaders, LightsBelowTheTableAreRefusedAndTurnedWhenAskedTo) {
+  for (DistantLight& light : sample_.lights) light.direction.z = -light.direction.z;
+  const PhotographSample truth;
+  sample_.write(folder_);
+  for (std::size_t k = 0; k < 6; ++k) {
+    PhotographSample upright = truth;
+    upright.ending = ".png";
+    upright.type = SampleType::kUint16;
+    upright.write(work_ / "upright");
+    fs::copy_file(work_ / "upright" / upright.name_of(k), photograph(k), fs::copy_options::overwrite_existing);
+  }
+  expect_refused({"lights lie below the table", "z is negative in all", "--flip z"});
+  ASSERT_EQ(solve({"--flip", "z"}).exit_code, 0);
+  EXPECT_LT(degrees(), 0.01);
+}
+
+TEST_F(PhotographHeaders, ADarkPhotographIsTakenFromTheOthers) {
+  const auto lit_by_the_room = [](Image<float> image) {
+    brighten(image, 0.05);
+    return image;
+  };
+  for (std::size_t k = 0; k < 6; ++k) change(k, lit_by_the_room);
+  Image<float> dark(sample_.size, 3);
+  brighten(dark, 0.05);
+  const std::array<View<const float>, 3> planes = {dark.plane(0), dark.plane(1), dark.plane(2)};
+  ASSERT_TRUE(write_image(work_ / "off.png", planes, {"R", "G", "B"}, {.type = SampleType::kUint16}));
+  ASSERT_EQ(solve({"--dark", (work_ / "off.png").string()}).exit_code, 0);
+  EXPECT_LT(degrees(), 0.02);
+  fs::remove_all(maps_);
+  ASSERT_EQ(solve({"--ambient", "0.05"}).exit_code, 0);
+  EXPECT_LT(degrees(), 0.02);
+}
+
+TEST_F(PhotographHeaders, LookSaysWhatAFileMeans) {
+  add_exif(photograph(0), exif_of(6, 60));
+  const Outcome run = run_weft({"look", photograph(0).string(), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  const Json picture = run.json()["pictures"][0];
+  EXPECT_EQ(picture["transfer"], "linear");
+  EXPECT_EQ(picture["transfer_by"], "");
+  EXPECT_EQ(picture["orientation"], 6);
+  EXPECT_NEAR(picture["exposure_us"].get<double>(), 1e6 / 60, 1);
+  EXPECT_TRUE(picture["unfit"].is_null());
+  const Outcome map = run_weft({"look", (folder_ / "normal_gt.exr").string(), "--json"});
+  ASSERT_EQ(map.exit_code, 0) << map.error;
+  EXPECT_EQ(map.json()["pictures"][0]["holds"], (std::vector<std::string>{"normal.x", "normal.y", "normal.z"}));
+  EXPECT_FALSE(map.json()["pictures"][0]["unfit"].is_null());
+}
+
+}  // namespace
+}  // namespace weft::test
