@@ -281,12 +281,13 @@ Result<Movement> find_movement(const Calibration& calibration, const RigEvidence
   const RigModel model(calibration, evidence, options);
   if (model.observations() == 0) {
     return refused("nothing in sight tells whether the rig moved",
-                   "no tag that the calibration knows, no white patch and no sheet was found",
+                   "no tag or fixed point that the calibration knows, no white patch and no sheet was found",
                    "calibrate the camera with tags on the table, or show a sheet of white paper");
   }
   Story story = Judge(model, model.calibrated()).fitted({}, Eigen::VectorXd());
   Movement movement;
   movement.corners = model.corners();
+  movement.points = static_cast<int>(evidence.points.size());
   movement.readings = model.readings();
   movement.chi_square_before = story.chi_square / model.observations();
   for (int i = 0; i < options.most_changes; ++i) {

@@ -23,7 +23,7 @@ namespace weft::calibration {
 // counts as noise.
 //
 // What each piece of evidence can tell:
-// - tags: where the camera is to the table, and nothing of LEDs;
+// - tags and fixed points: where the camera is to the table, and nothing of LEDs;
 // - patches on the table: whether the camera moved or the table. LEDs light them differently after the table
 //   moved, and alike after the camera did;
 // - one patch: how bright each LED is. Several in different places tell a LED that moved from one that faded;
@@ -44,15 +44,23 @@ struct LitPlace {
   double reading_sigma = 0;  ///< of each, relative: what few pixels leave of noise and grain
 };
 
+/// A point that stays on the table, and where it is seen.
+struct PlacedPoint {
+  Vec3 point_mm;  ///< rig frame, by the calibration
+  PixelPoint seen_px;
+  double sigma_px = 0;  ///< of both, beside MovementOptions::corner_sigma_px
+};
+
 struct RigEvidence {
   std::vector<TagSighting> tags;
   std::vector<LitPlace> places;
+  std::vector<PlacedPoint> points = {};
 };
 
 /// Standard deviations of what changes from one session to the next though nothing moved, and what it takes
 /// to say that something did.
 struct MovementOptions {
-  double corner_sigma_px = 0.1;
+  double corner_sigma_px = 0.1;   ///< of tags' corners and fixed points
   double flicker = 0.003;         ///< of a LED's brightness, relative
   double reading_sigma = 0.0002;  ///< of a place's mean reading, relative
   double few_pixels = 1;          ///< times LitPlace::reading_sigma, which adds to that
@@ -90,6 +98,7 @@ struct Movement {
   double chi_square_before = 0;    ///< per observation, as calibrated
   double chi_square_after = 0;     ///< with the changes
   int corners = 0;                 ///< of tags, in the evidence
+  int points = 0;                  ///< fixed ones
   int readings = 0;
   /// The rig as it is now, in the frame of its table.
   CameraModel camera;
@@ -104,8 +113,8 @@ inline constexpr double kUnexplainedFrom = 5;
 /// From this one on it is explained worse than usual: a rig that stood still is below 1.5.
 inline constexpr double kDoubtfulFrom = 2;
 
-/// Errors: kBadData where there is no evidence: neither a tag of `calibration.fiducials` nor a reading; or
-/// where the calibration has no camera or no near lights.
+/// Errors: kBadData where there is no evidence: neither a tag of `calibration.fiducials`, nor a point, nor a
+/// reading; or where the calibration has no camera or no near lights.
 Result<Movement> find_movement(const Calibration& calibration, const RigEvidence& evidence,
                                const MovementOptions& options = {});
 

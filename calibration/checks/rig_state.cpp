@@ -115,13 +115,17 @@ RigModel::RigModel(const Calibration& calibration, const RigEvidence& evidence,
       lights_(std::get<NearLights>(*calibration.lights)),
       light_covariance_(calibration.light_covariance),
       options_(options),
+      points_(evidence.points.size()),
       places_(evidence.places) {
   for (const TagSighting& tag : evidence.tags) {
     for (const Fiducial& fiducial : calibration.fiducials) {
       if (fiducial.id != tag.id || fiducial.dictionary != tag.dictionary) continue;
-      for (std::size_t i = 0; i < 4; ++i) corners_.push_back({fiducial.corners_mm[i], tag.corners_px[i]});
+      for (std::size_t i = 0; i < 4; ++i)
+        corners_.push_back({fiducial.corners_mm[i], tag.corners_px[i], options.corner_sigma_px});
     }
   }
+  for (const PlacedPoint& point : evidence.points)
+    corners_.push_back({point.point_mm, point.seen_px, std::hypot(options.corner_sigma_px, point.sigma_px)});
   for (std::size_t p = 0; p < places_.size(); ++p) {
     const LitPlace& place = places_[p];
     for (std::size_t k = 0; k < std::min(place.reading_rgb.size(), lights_.leds.size()); ++k) {
@@ -198,10 +202,13 @@ Eigen::VectorXd RigModel::predicted(const RigState& state) const {
 }
 
 Eigen::MatrixXd RigModel::covariance(const RigState& state) const {
-  const Eigen::Index first = 2 * corners();
+  const Eigen::Index first = first_reading();
   const double tilt = std::tan(radians(options_.tilt_sigma_deg));
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(observations(), observations());
-  for (Eigen::Index i = 0; i < first; ++i) sum(i, i) = options_.corner_sigma_px * options_.corner_sigma_px;
+  for (Eigen::Index i = 0; i < first; ++i) {
+    const double sigma = corners_[static_cast<std::size_t>(i / 2)].sigma_px;
+    sum(i, i) = sigma * sigma;
+  }
 
   // What a place's tilt against its normal changes: the light's direction along the place over the cosine.
   std::vector<Vec3> by_tilt;
@@ -243,7 +250,7 @@ void RigModel::add_light_covariance(const ParameterCovariance& covariance, const
       const double by =
           (log_reading(*up, state, readings_[i]) - log_reading(*down, state, readings_[i])) / (2 * kStep);
       // A LED that does not light the place in this order makes the prediction fail, not the covariance.
-      by_parameter(2 * corners() + static_cast<Eigen::Index>(i), p) = std::isfinite(by) ? by : 0;
+      by_parameter(first_reading() + static_cast<Eigen::Index>(i), p) = std::isfinite(by) ? by : 0;
     }
   }
   const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> matrix(

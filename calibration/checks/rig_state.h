@@ -35,11 +35,12 @@ class RigModel {
 
   RigState calibrated() const;
   int leds() const { return static_cast<int>(lights_.leds.size()); }
-  int corners() const { return static_cast<int>(corners_.size()); }
+  int corners() const { return static_cast<int>(corners_.size() - points_); }
   int readings() const { return static_cast<int>(readings_.size()); }
-  int observations() const { return 2 * corners() + readings(); }
+  int observations() const { return static_cast<int>(first_reading()) + readings(); }
 
-  /// Pixels of the tags' corners, then logs of readings over reflectance, means of channels.
+  /// Pixels of the tags' corners and of fixed points, then logs of readings over reflectance, means of
+  /// channels.
   Eigen::VectorXd measured() const;
   /// The same as a state has it; not finite where a tag is behind the camera or a place is not lit.
   Eigen::VectorXd predicted(const RigState& state) const;
@@ -54,6 +55,7 @@ class RigModel {
   struct Corner {
     Vec3 point_mm;
     PixelPoint seen_px;
+    double sigma_px = 0;
   };
   struct Reading {
     std::size_t place = 0;
@@ -61,6 +63,7 @@ class RigModel {
     double log_reading = 0;
     double channels[3] = {};  ///< weights of the mean, 0 where a channel is not used
   };
+  Eigen::Index first_reading() const { return 2 * static_cast<Eigen::Index>(corners_.size()); }
   double log_reading(const NearLights& lights, const RigState& state, const Reading& reading) const;
   void add_light_covariance(const ParameterCovariance& covariance, const RigState& state,
                             Eigen::MatrixXd& sum) const;
@@ -69,7 +72,8 @@ class RigModel {
   NearLights lights_;
   std::optional<ParameterCovariance> light_covariance_;
   MovementOptions options_;
-  std::vector<Corner> corners_;
+  std::vector<Corner> corners_;  ///< fixed points are the last ones
+  std::size_t points_;
   std::vector<LitPlace> places_;
   std::vector<Reading> readings_;
 };

@@ -209,10 +209,15 @@ Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options,
   const std::optional<LateralFit> lateral = fit_lateral_color(*edges, fit.camera);
   if (lateral) change.lateral = lateral->color;
   change.fiducials = fiducials_of(all, fit.camera, outcome.warnings);
-  if (from && !from->patches.empty()) {
+  if (from && !(from->patches.empty() && from->points.empty())) {
     change.lights = from->lights;
     change.light_covariance = from->light_covariance;
-    outcome.warnings.push_back(patches_left_out("camera"));
+    if (!from->patches.empty()) outcome.warnings.push_back(patches_left_out("camera"));
+    if (!from->points.empty())
+      outcome.warnings.emplace_back(
+          "the fixed points were left out, as the camera may stand elsewhere: weft calibrate lights finds "
+          "them "
+          "again");
   }
   const CameraFitFacts facts = {
       all, viewed, views, fit, change.fiducials, change.spread, lateral, from, change.subject.rig};

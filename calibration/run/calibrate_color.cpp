@@ -382,6 +382,7 @@ void take_white_from(const FlatChart& chart, const Calibration& before, Calibrat
   multiply(*change.lights, factors);
   change.light_covariance = before.light_covariance;
   change.patches = before.patches;
+  change.points = before.points;
   for (WhitePatch& patch : change.patches) {
     for (std::size_t c = 0; c < 3; ++c) patch.reflectance_rgb[c] /= factors[c];
   }

@@ -226,6 +226,7 @@ Result<CalibrateOutcome> calibrate_grey(const CalibrateGreyOptions& options, con
   change.subject.albedo_scale = AlbedoScale::kAbsolute;
   change.lights = found->lights;
   change.light_covariance = with_chart(before.light_covariance, *found);
+  change.points = before.points;
   const fs::path from = options.from.empty() ? options.session / "calibration" : options.from;
   Result<Calibration> written =
       derive_calibration(from, std::move(change), options.output, report_files(outcome.report));

@@ -460,6 +460,8 @@ Result<CalibrateOutcome> LightsCalibration::write() {
     change.lights = evidence_.fit->scene.lights;
     change.light_covariance = evidence_.fit->covariance;
   }
+  change.points = captures_.points;
+  evidence_.points = static_cast<int>(captures_.points.size());
   CalibrateOutcome outcome;
   if (!calibration_.patches.empty()) outcome.warnings.push_back(patches_left_out("lights"));
   if (std::string lax = lax_gate(evidence_); !lax.empty()) outcome.warnings.push_back(std::move(lax));

@@ -212,6 +212,7 @@ Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& option
   parts.lights = change.lights;
   parts.light_covariance = change.light_covariance;
   parts.patches = change.patches;
+  parts.points = change.points;
   Result<Calibration> written =
       derive_calibration(from, std::move(parts), options.output, report_files(outcome.report));
   if (!written) return std::move(written).error();

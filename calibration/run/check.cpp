@@ -315,13 +315,15 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
   report.title = fmt::format("Has {} moved?", rig.calibration.subject.rig);
   report::Section section = {"What the session shows", {}, {}, {}};
   section.paragraphs.push_back(fmt::format(
-      "{} corners of tags and {} readings were compared with what the calibration predicts: chi-square "
-      "{:.2f} each before, {:.2f} with what was found.",
-      movement.corners, movement.readings, movement.chi_square_before, movement.chi_square_after));
-  if (movement.corners == 0) {
+      "{} corners of tags, {} fixed points and {} readings were compared with what the calibration predicts: "
+      "chi-square {:.2f} each before, {:.2f} with what was found.",
+      movement.corners, movement.points, movement.readings, movement.chi_square_before,
+      movement.chi_square_after));
+  const bool sees_place = movement.corners > 0 || movement.points > 0;
+  if (!sees_place) {
     section.paragraphs.push_back(
-        "No tag of the calibration was in sight: whether camera and table moved to each other was not "
-        "checked.");
+        "No tag and no fixed point of the calibration was in sight: whether camera and table moved to each "
+        "other was not checked.");
   }
   if (movement.readings == 0) {
     section.paragraphs.push_back(
@@ -330,6 +332,7 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
   }
   report.numbers = {{"session", session},
                     {"corners", movement.corners},
+                    {"points", movement.points},
                     {"readings", movement.readings},
                     {"chi_square_before", movement.chi_square_before},
                     {"chi_square_after", movement.chi_square_after},
@@ -361,11 +364,11 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
         "The rig has changed; scanning on would cost {:.2f} degrees in the mean and {:.2f} at worst",
         rig.cost.mean_deg, rig.cost.worst_deg);
   } else {
-    report.summary =
-        !report.verdicts.empty() ? "The rig is not as it was calibrated, and nothing says why"
-        : movement.readings == 0 ? "Camera and table are as they were calibrated; LEDs were not checked"
-        : movement.corners == 0  ? "LEDs are as they were calibrated; camera against table was not checked"
-                                 : "Nothing has moved since the rig was calibrated";
+    report.summary = !report.verdicts.empty() ? "The rig is not as it was calibrated, and nothing says why"
+                     : movement.readings == 0
+                         ? "Camera and table are as they were calibrated; LEDs were not checked"
+                     : !sees_place ? "LEDs are as they were calibrated; camera against table was not checked"
+                                   : "Nothing has moved since the rig was calibrated";
   }
   report.sections.push_back(std::move(section));
   return report;

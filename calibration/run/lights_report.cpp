@@ -198,7 +198,7 @@ report::Section seed_section(const LightsEvidence& e) {
 }
 
 Json numbers_of(const LightsEvidence& e) {
-  Json numbers = Json::object();
+  Json numbers = {{"points", e.points}};
   for (const FittedSession& session : e.fitted)
     numbers["fitted"].push_back({{"session", session.name}, {"lit_sha256", session.lit_sha256}});
   if (e.fit) {
@@ -288,6 +288,7 @@ CalibrationReport lights_report(const LightsEvidence& e, std::vector<Verdict> ve
         fmt::format("{} LEDs by the seed's iteration on one flat sheet: directions are those of the tape.",
                     e.start.lights.leds.size());
   }
+  report.summary += fmt::format(" {} fixed point{} beside the sheet.", e.points, e.points == 1 ? "" : "s");
   report.verdicts = std::move(verdicts);
   if (e.fit) {
     report.sections.push_back(led_section(e));

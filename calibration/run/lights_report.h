@@ -41,6 +41,7 @@ struct LightsEvidence {
   std::optional<PredictedError> predicted;
   std::optional<PerPixelLights> per_pixel;
   std::optional<SeedLights> seed;
+  int points = 0;  ///< fixed ones that were found beside the sheet
 };
 
 CalibrationReport lights_report(const LightsEvidence& evidence, std::vector<Verdict> verdicts);

@@ -74,6 +74,15 @@ std::string name_of(ChangeKind kind) {
   return "ALL_FADED";
 }
 
+std::string place_evidence_words(const Movement& movement) {
+  const auto counted = [](int n, const char* what) {
+    return n == 0 ? "" : fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  };
+  const std::string tags = counted(movement.corners / 4, "tag"),
+                    points = counted(movement.points, "fixed point");
+  return tags + (tags.empty() || points.empty() ? "" : " and ") + points;
+}
+
 std::string sentence(const RigChange& change) {
   std::string text;
   switch (change.kind) {

@@ -14,6 +14,9 @@ namespace weft::calibration {
 /// CAMERA_MOVED, TABLE_MOVED, LED_MOVED, LED_FADED, LEDS_EXCHANGED, ALL_FADED.
 std::string name_of(ChangeKind kind);
 
+/// "4 tags and 7 fixed points": what says where the camera is to the table; empty: nothing.
+std::string place_evidence_words(const Movement& movement);
+
 /// "LED 4 has moved by 5.1 mm (x 4.9 ± 0.2, y 1.3 ± 0.2, z -0.2 ± 0.4)", and what the evidence cannot tell
 /// from it.
 std::string sentence(const RigChange& change);

@@ -15,7 +15,10 @@ namespace weft::calibration {
 namespace {
 
 constexpr std::size_t kMostLooks = 3;
-constexpr double kPatchSigma = 0.02;  // of a patch's reflectance since it was measured
+constexpr double kPatchSigma = 0.02;      // of a patch's reflectance since it was measured
+constexpr std::size_t kFewestPoints = 4;  // without tags: six numbers say where a camera is
+constexpr double kLeastSpread = 0.1;      // rms across the line that they are nearest to, frame heights
+constexpr double kStray = 4;              // standard deviations
 constexpr double kNoReading = std::numeric_limits<double>::quiet_NaN();
 
 Image<std::uint8_t> grey_of(const solve::Photographs& photographs, std::size_t k) {
@@ -159,6 +162,27 @@ Result<std::vector<TagSighting>> tags_in(const solve::Photographs& photographs,
   return means;
 }
 
+std::vector<PointSighting> points_in(const solve::Photographs& photographs, const Calibration& calibration) {
+  std::vector<PointSighting> seen;
+  const solve::Mosaics* mosaics = photographs.mosaics();
+  for (const FixedPoint& point : calibration.points) {
+    const int reach = point_reach_cells(*calibration.camera, point.cell_px);
+    const Rect box = search_box(point, reach, photographs.size);
+    if (box == Rect()) continue;
+    Image<float> cells(cells_in(box, point.cell_px));
+    for (std::size_t k = 0; k < photographs.count(); ++k) {
+      if (mosaics != nullptr) {
+        add_cells(mosaics->frames[k].counts.plane(), box, point.cell_px, 1, cells);
+        continue;
+      }
+      const Image<float>& rgb = std::get<solve::Developed>(photographs.frames).rgb[k];
+      for (int c = 0; c < 3; ++c) add_cells(rgb.plane(c), box, point.cell_px, c == 1 ? 2 : 1, cells);
+    }
+    if (std::optional<PointSighting> found = find_point(point, cells, box)) seen.push_back(std::move(*found));
+  }
+  return seen;
+}
+
 double tag_height_mm(const std::vector<Fiducial>& fiducials) {
   double sum = 0;
   for (const Fiducial& fiducial : fiducials) {
@@ -177,6 +201,14 @@ WhitePatch relocated(const WhitePatch& patch, const CameraModel& before, const C
   return out;
 }
 
+FixedPoint relocated(const FixedPoint& point, const CameraModel& before, const CameraModel& now,
+                     double plane_mm) {
+  FixedPoint out = point;
+  const Vec3 p = project(now, point_on_plane(before, point.x_px, point.y_px, plane_mm));
+  out.x_px = p.x, out.y_px = p.y;
+  return out;
+}
+
 namespace {
 
 double height_of(const WhitePatch& patch, const Calibration& calibration) {
@@ -187,10 +219,56 @@ WhitePatch patch_now(const WhitePatch& patch, const Calibration& calibration, co
   return relocated(patch, *calibration.camera, now, height_of(patch, calibration));
 }
 
-// Where the camera is to the table; as calibrated where no tag tells.
-CameraModel camera_by_tags(const Calibration& calibration, const std::vector<TagSighting>& tags) {
-  const Result<Movement> moved = find_movement(calibration, {tags, {}});
+// Where the camera is to the table; as calibrated where nothing tells.
+CameraModel camera_by(const Calibration& calibration, const RigEvidence& of_place) {
+  const Result<Movement> moved = find_movement(calibration, of_place);
   return moved ? moved->camera : *calibration.camera;
+}
+
+// How far a point is from where a camera has it, in standard deviations.
+double departure_of(const PlacedPoint& point, const CameraModel& camera) {
+  const Vec3 p = project(camera, point.point_mm);
+  return std::hypot(p.x - point.seen_px.x, p.y - point.seen_px.y) /
+         std::hypot(MovementOptions().corner_sigma_px, point.sigma_px);
+}
+
+// Whether points say how a camera is turned: a camera may turn about a line of them unseen.
+bool are_spread(const std::vector<PlacedPoint>& points, Size frame) {
+  if (points.size() < kFewestPoints) return false;
+  Polygon places;
+  for (const PlacedPoint& point : points) places.push_back(point.seen_px);
+  const PixelPoint middle = centre_of(places);
+  double xx = 0, yy = 0, xy = 0;
+  const auto n = static_cast<double>(places.size());
+  for (const PixelPoint& p : places) {
+    const double x = p.x - middle.x, y = p.y - middle.y;
+    xx += x * x / n, yy += y * y / n, xy += x * y / n;
+  }
+  const double across = std::sqrt(std::max(xx + yy - std::hypot(xx - yy, 2 * xy), 0.0) / 2);
+  return across >= kLeastSpread * frame.height;
+}
+
+// What tells of the camera to the table.
+RigEvidence place_evidence(const Calibration& calibration, const RigSightings& sightings) {
+  RigEvidence evidence = {sightings.tags, {}, {}};
+  const double height_mm = tag_height_mm(calibration.fiducials);
+  for (const PointSighting& seen : sightings.points) {
+    const auto known = std::ranges::find(calibration.points, seen.id, &FixedPoint::id);
+    if (known == calibration.points.end()) continue;
+    evidence.points.push_back({point_on_plane(*calibration.camera, known->x_px, known->y_px, height_mm),
+                               {seen.x_px, seen.y_px},
+                               std::hypot(known->sigma_px, seen.sigma_px)});
+  }
+  for (std::size_t most = evidence.points.size() / 3; most > 0; --most) {
+    const CameraModel now = camera_by(calibration, evidence);
+    const auto worst = std::ranges::max_element(
+        evidence.points, {}, [&](const PlacedPoint& point) { return departure_of(point, now); });
+    if (departure_of(*worst, now) < kStray) break;
+    evidence.points.erase(worst);
+  }
+  if (sightings.tags.empty() && !are_spread(evidence.points, calibration.camera->size))
+    evidence.points.clear();
+  return evidence;
 }
 
 }  // namespace
@@ -200,8 +278,8 @@ Result<RigSightings> sightings_in(const Calibration& calibration, const solve::P
   for (const Fiducial& fiducial : calibration.fiducials) dictionaries.insert(fiducial.dictionary);
   Result<std::vector<TagSighting>> tags = tags_in(photographs, {dictionaries.begin(), dictionaries.end()});
   if (!tags) return std::move(tags).error();
-  RigSightings seen = {std::move(*tags), {}};
-  const CameraModel now = camera_by_tags(calibration, seen.tags);
+  RigSightings seen = {std::move(*tags), {}, points_in(photographs, calibration)};
+  const CameraModel now = camera_by(calibration, place_evidence(calibration, seen));
   for (const WhitePatch& patch : calibration.patches) {
     if (patch.polygon_px.size() < 3) continue;
     const Polygon polygon = inside_of(patch_now(patch, calibration, now));
@@ -220,8 +298,8 @@ Result<RigSightings> sightings_in(const Calibration& calibration, const solve::P
 }
 
 RigEvidence evidence_of(const Calibration& calibration, const RigSightings& sightings) {
-  RigEvidence evidence = {sightings.tags, {}};
-  const CameraModel now = camera_by_tags(calibration, sightings.tags);
+  RigEvidence evidence = place_evidence(calibration, sightings);
+  const CameraModel now = camera_by(calibration, evidence);
   for (const WhitePatch& patch : calibration.patches) {
     if (patch.polygon_px.size() < 3) continue;
     const Polygon polygon = inside_of(patch_now(patch, calibration, now));

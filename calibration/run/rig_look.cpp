@@ -125,7 +125,14 @@ void put_cost(RigLook& look, const Calibration& calibration, const RigEvidence& 
 // What was not looked at for want of evidence.
 std::string unseen_words(const Movement& movement) {
   if (movement.readings == 0) return ", its LEDs not seen: no white patch in sight";
-  return movement.corners == 0 ? ", the camera against its table not seen: no tag in sight" : "";
+  return movement.corners == 0 && movement.points == 0
+             ? ", the camera against its table not seen: no tag and no fixed point in sight"
+             : "";
+}
+
+// Who says so, where it is more than tags.
+std::string by_words(const Movement& movement) {
+  return movement.points == 0 ? "" : " by " + place_evidence_words(movement);
 }
 
 void judge(RigLook& look, const Movement& movement) {
@@ -136,19 +143,20 @@ void judge(RigLook& look, const Movement& movement) {
   }
   if (movement.chi_square_after > kUnexplainedFrom) {
     look.state = RigPlace::kUnexplained;
-    look.says = "what tags and patches show contradicts the calibration, and no move explains it";
+    look.says =
+        "what tags, fixed points and patches show contradicts the calibration, and no move explains it";
     look.action = "see whether a patch is covered or a tag was laid elsewhere, else calibrate again";
   } else if (matters(look.cost)) {
     moves.insert(moves.end(), levels.begin(), levels.end());
     look.state = RigPlace::kMoved;
-    look.says = fmt::format("{}, costs {}", fmt::join(moves, ", "), cost_words(look));
+    look.says = fmt::format("{}, costs {}{}", fmt::join(moves, ", "), cost_words(look), by_words(movement));
     look.action = "calibrate again what moved";
   } else if (!levels.empty()) {
     look.state = RigPlace::kDimmed;
     look.says = fmt::format("{}, which its patches put right", fmt::join(levels, ", "));
   } else {
     look.state = RigPlace::kInPlace;
-    look.says = fmt::format("in place{}", unseen_words(movement));
+    look.says = fmt::format("in place{}{}", by_words(movement), unseen_words(movement));
   }
 }
 
@@ -197,6 +205,13 @@ void describe(Fields& fields, SeenPatch& patch) {
   fields.value({"sigma", "Of each reading, relative: what few pixels leave of noise and grain"}, patch.sigma);
 }
 
+void describe(Fields& fields, PointSighting& point) {
+  fields.value({"id", "Of the fixed point", {}, kMustSay}, point.id);
+  fields.value({"x_px", "Its middle", {}, kMustSay}, point.x_px);
+  fields.value({"y_px", "Its middle", {}, kMustSay}, point.y_px);
+  fields.value({"sigma_px", "Of either, a standard deviation", kNotNegative, kMustSay}, point.sigma_px);
+}
+
 void describe(Fields& fields, RigLook& look) {
   describe(fields, static_cast<RigLookFacts&>(look));
   fields.value({"cost_mean_deg", "That normals are off on average, degrees"}, look.cost.mean_deg);
@@ -210,6 +225,7 @@ void describe(Fields& fields, RigLook& look) {
   fields.value({"changes", "As `weft calibrate check` names them"}, look.changes);
   fields.list({"tags", "In sight"}, look.seen.tags);
   fields.list({"patches", "White ones of the calibration"}, look.seen.patches);
+  fields.list({"points", "Fixed ones of the calibration, in sight", {}, kUnlessEmpty}, look.seen.points);
 }
 
 RigLook look_by(const Calibration& calibration, RigSightings seen, double paper_delta) {
@@ -219,7 +235,8 @@ RigLook look_by(const Calibration& calibration, RigSightings seen, double paper_
   look.seen = std::move(seen);
   const Result<Movement> movement = find_movement(calibration, evidence, {.paper_delta = paper_delta});
   if (!movement) {
-    look.says = "nothing of the rig is in sight: no tag and no white patch of its calibration";
+    look.says =
+        "nothing of the rig is in sight: no tag or white patch of its calibration, nor four fixed points";
     look.action = "leave tags and patches beside the cloth";
     return look;
   }

@@ -30,6 +30,7 @@ struct RigLook : RigLookFacts {
 };
 void describe(Fields& fields, TagSighting& tag);
 void describe(Fields& fields, SeenPatch& patch);
+void describe(Fields& fields, PointSighting& point);
 void describe(Fields& fields, RigLook& look);
 
 /// What was seen against a calibration; `paper_delta` as MovementOptions has it.

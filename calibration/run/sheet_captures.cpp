@@ -54,6 +54,10 @@ class SumPicture {
       for (int x = 0; x < sum_.width(); ++x) to[x] += from[x];
     }
   }
+  void add_to(Image<float>& cells, int cell_px) const {
+    const Rect all = {0, 0, sum_.width(), sum_.height()};
+    add_cells(sum_.plane(), all, cell_px, 1, cells);
+  }
   Image<std::uint8_t> grey() {
     like_.counts = Image<std::uint16_t>(sum_.size());
     for (int y = 0; y < sum_.height(); ++y) {
@@ -76,7 +80,7 @@ class SessionReader {
   SessionReader(const SheetCapturesOptions& options, const JobContext& context, fs::path folder)
       : options_(options), context_(context), folder_(std::move(folder)) {}
 
-  Result<SheetCapture> read(int block_px, std::vector<Verdict>& warnings) {
+  Result<SheetCapture> read(int block_px, FixedPointFinder& points, std::vector<Verdict>& warnings) {
     block_px_ = block_px;
     if (Result<void> ok = look(); !ok) return std::move(ok).error();
     SheetCapture capture;
@@ -85,10 +89,12 @@ class SessionReader {
     if (!digests) return std::move(digests).error();
     capture.lit_sha256 = std::move(*digests);
     capture.leds.resize(light_count(*options_.calibration.lights));
+    cells_ = Image<float>(cells_in({0, 0, size().width, size().height}, point_cell_px(size())));
     Result<Image<std::uint8_t>> grey = raw_ ? read_mosaics(capture.leds) : read_developed(capture.leds);
     if (!grey) return std::move(grey).error();
     if (Result<void> ok = find_pose(*grey, capture); !ok) return std::move(ok).error();
     mark_paper(capture);
+    points.add(cells_, outline_of(capture.pose.rig_from_sheet));
     if (Result<void> ok = check_light(capture, warnings); !ok) return std::move(ok).error();
     return capture;
   }
@@ -101,6 +107,7 @@ class SessionReader {
   Result<Image<std::uint8_t>> read_developed(std::vector<SheetBlockGrid>& leds);
   Result<void> find_pose(const Image<std::uint8_t>& grey, SheetCapture& capture) const;
   void mark_paper(SheetCapture& capture) const;
+  std::vector<PixelPoint> outline_of(const Pose& rig_from_sheet) const;
   Result<void> check_light(const SheetCapture& capture, std::vector<Verdict>& warnings) const;
 
   Size size() const { return options_.calibration.camera->size; }
@@ -113,6 +120,7 @@ class SessionReader {
   Session session_;
   std::vector<Shot> lit_;
   bool raw_ = true;
+  Image<float> cells_;  ///< the light of all LEDs together, as fixed points are found in
 };
 
 // Everything that can be told before a pixel is decoded.
@@ -168,6 +176,7 @@ Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<SheetBlockGr
   JobContext two = context_;
   two.threads = std::min(resolved_threads(context_.threads), 2);
   if (Result<void> ok = for_each_frame(lit_.size(), two, read_frame); !ok) return std::move(ok).error();
+  sum.add_to(cells_, point_cell_px(size()));
   return sum.grey();
 }
 
@@ -204,6 +213,9 @@ Result<Image<std::uint8_t>> SessionReader::read_developed(std::vector<SheetBlock
   }
   const std::array<View<const float>, 3> planes = {std::as_const(sum).plane(0), std::as_const(sum).plane(1),
                                                    std::as_const(sum).plane(2)};
+  const int cell_px = point_cell_px(size());
+  for (std::size_t c = 0; c < 3; ++c)
+    add_cells(planes[c], {0, 0, size().width, size().height}, cell_px, c == 1 ? 2 : 1, cells_);
   return grey_picture(planes);
 }
 
@@ -234,6 +246,16 @@ void SessionReader::mark_paper(SheetCapture& capture) const {
                       grid.centre_px(column), grid.centre_px(row), block_px_);
     }
   });
+}
+
+std::vector<PixelPoint> SessionReader::outline_of(const Pose& rig_from_sheet) const {
+  const double u = options_.sheet.sheet.width_mm / 2, v = options_.sheet.sheet.height_mm / 2;
+  std::vector<PixelPoint> outline;
+  for (const Vec3 corner : {Vec3{-u, v, 0}, Vec3{u, v, 0}, Vec3{u, -v, 0}, Vec3{-u, -v, 0}}) {
+    const Vec3 p = project(*options_.calibration.camera, rig_from_sheet(corner));
+    outline.push_back({p.x, p.y});
+  }
+  return outline;
 }
 
 // LEDs that gave no light, and paper that is full.
@@ -344,6 +366,7 @@ Result<SheetCaptures> read_sheet_captures(const SheetCapturesOptions& options, c
   const SheetBlockGrid like(size, all.block_px);
   all.columns = like.columns;
   all.rows = like.rows;
+  FixedPointFinder points(*options.calibration.camera, options.calibration.points);
   std::optional<Session> first;
   for (std::size_t i = 0; i < folders.size(); ++i) {
     JobContext part = context;
@@ -351,7 +374,7 @@ Result<SheetCaptures> read_sheet_captures(const SheetCapturesOptions& options, c
       context.progress(phase, (static_cast<double>(i) + share) / static_cast<double>(folders.size()));
     };
     SessionReader reader(options, part, folders[i]);
-    Result<SheetCapture> capture = reader.read(all.block_px, all.warnings);
+    Result<SheetCapture> capture = reader.read(all.block_px, points, all.warnings);
     if (!capture) return std::move(capture).error();
     if (!first) first = reader.session();
     const Result<double> scale = exposure_scale(reader.session(), *first, *options.calibration.response);
@@ -372,6 +395,7 @@ Result<SheetCaptures> read_sheet_captures(const SheetCapturesOptions& options, c
     return bad_capture(options.folder, "a LED was never lit", fmt::format("no session lights LED {}", k + 1),
                        "scan the sheet with all LEDs, or take the LED out of rig.toml");
   }
+  all.points = points.found();
   warn_of_poses(all, leds);
   return all;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/camera/fixed_points.h"
 #include "calibration/lights/light_map.h"
 #include "calibration/lights/paper_model.h"
 #include "calibration/lights/sheet_blocks.h"
@@ -33,13 +34,15 @@ struct SheetCaptures {
   int block_px = 16;
   int columns = 0, rows = 0;  ///< of blocks
   std::vector<SheetCapture> captures;
+  std::vector<FixedPoint> points;  ///< what stayed where it is beside the sheet
   std::vector<Verdict> warnings;
 };
 
 /// Where the sessions are, and what they were taken with.
 struct SheetCapturesOptions {
   std::filesystem::path folder;  ///< of *.weft
-  Calibration calibration;       ///< camera and response; its lights say how many LEDs there are
+  Calibration calibration;       ///< camera and response; its lights say how many LEDs there are; its
+                                 ///< points keep their ids
   TaggedSheet sheet;
 };
 

@@ -92,13 +92,16 @@ Calibration change_of(const RigCheck& rig) {
     change.spread = before.spread;
     change.lateral = before.lateral;
   }
-  if (lights || (body && !before.patches.empty())) {
+  if (lights || (body && !(before.patches.empty() && before.points.empty()))) {
     change.lights = rig.movement.lights;
     change.light_covariance = renamed(merged(before.light_covariance, rig.movement.covariance), changes);
+    const double height_mm = tag_height_mm(before.fiducials);
     for (const WhitePatch& patch : before.patches) {
-      change.patches.push_back(relocated(patch, *before.camera, rig.movement.camera,
-                                         patch.height_mm.value_or(tag_height_mm(before.fiducials))));
+      change.patches.push_back(
+          relocated(patch, *before.camera, rig.movement.camera, patch.height_mm.value_or(height_mm)));
     }
+    for (const FixedPoint& point : before.points)
+      change.points.push_back(relocated(point, *before.camera, rig.movement.camera, height_mm));
   }
   return change;
 }
@@ -171,7 +174,7 @@ Result<CalibrateOutcome> calibrate_update(const CalibrateUpdateOptions& options,
   }
   if (rig->movement.changes.empty()) {
     return refused(options, "there is nothing to update",
-                   "tags and readings are what the calibration predicts",
+                   "tags, fixed points and readings are what the calibration predicts",
                    "go on with the calibration that there is");
   }
   if (const RigChange* change = ambiguous(rig->movement)) {

@@ -88,7 +88,7 @@ Result<void> write_parts(const fs::path& folder, const Calibration& c, Digests& 
   if (written && c.response) written = write_part(folder, kResponseFile, *c.response, digests);
   if (written && c.color) written = write_part(folder, kColorFile, *c.color, digests);
   if (written && c.lights) {
-    const LightsPart part = {*c.lights, c.patches, c.light_covariance};
+    const LightsPart part = {*c.lights, c.patches, c.light_covariance, c.points};
     written = write_part(folder, kLightsFile, part, digests);
   }
   if (written && c.hot_picture) written = copy_part(*c.hot_picture, folder, kHotFile, digests);
@@ -221,6 +221,7 @@ Result<Calibration> read_calibration(const fs::path& folder) {
   if (*lights) {
     calibration.lights = std::move((*lights)->lights);
     calibration.patches = std::move((*lights)->patches);
+    calibration.points = std::move((*lights)->points);
     calibration.light_covariance = std::move((*lights)->covariance);
   }
   if (parts.contains(kHotFile)) {

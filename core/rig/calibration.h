@@ -12,6 +12,7 @@
 #include "core/describe/fields.h"
 #include "core/rig/albedo_scale.h"
 #include "core/rig/camera.h"
+#include "core/rig/fixed_point.h"
 #include "core/rig/lateral_color.h"
 #include "core/rig/lights.h"
 #include "core/rig/point_spread.h"
@@ -110,6 +111,7 @@ struct Calibration {
   std::optional<ColorTransform> color;
   std::optional<Lights> lights;
   std::vector<WhitePatch> patches;                      ///< of lights.json
+  std::vector<FixedPoint> points;                       ///< of lights.json
   std::optional<ParameterCovariance> light_covariance;  ///< of lights.json, where they are near
   std::optional<std::filesystem::path> hot_picture;  ///< the part hot.png, checked but not read: 8-bit grey
                                                      ///< on the active area, a bad photosite is not 0

@@ -245,6 +245,21 @@ void describe(Fields& fields, WhitePatch& p) {
                p.height_mm);
 }
 
+void describe(Fields& fields, FixedPoint& p) {
+  constexpr std::size_t kDigits = std::size_t{2} * kPointCells * kPointCells;
+  fields.value({"id", "Stays the same when it is measured again", {}, kMustSay}, p.id);
+  fields.value({"x_px", "Its middle, on the active area", {}, kMustSay}, p.x_px);
+  fields.value({"y_px", "Its middle, on the active area", {}, kMustSay}, p.y_px);
+  fields.value({"sigma_px", "Of either, a standard deviation", kNotNegative, kMustSay}, p.sigma_px);
+  fields.value({"cell_px", "Side of a cell of its picture, pixels", {2, 1000}, kMustSay}, p.cell_px);
+  fields.require(p.cell_px % 2 == 0, "cell_px", "must be even");
+  fields.value({"grey", "20 x 20 cells by rows, two hexadecimal digits each, ff the brightest", {}, kMustSay},
+               p.grey);
+  fields.require(
+      p.grey.size() == kDigits && p.grey.find_first_not_of("0123456789abcdef") == std::string::npos, "grey",
+      "must be 800 hexadecimal digits");
+}
+
 void describe(Fields& fields, LightsPart& p) {
   constexpr std::array<const char*, 2> kKinds = {"near", "distant"};
   NearLights near;
@@ -260,9 +275,11 @@ void describe(Fields& fields, LightsPart& p) {
   fields.list({"patches", "Of known reflectance, in the frame of every scan; since 1.1", {}, kUnlessEmpty},
               p.patches);
   fields.object({"covariance", "Of what was fitted; since 1.1", {}, kUnlessEmpty}, p.covariance);
+  fields.list({"points", "That stay where they are beside the cloth; since 1.3", {}, kUnlessEmpty}, p.points);
 }
 
 const char* schema_name(const LightsPart& p) {
+  if (!p.points.empty()) return "weft.lights/1.3";
   const bool is_newer = std::ranges::any_of(
       p.patches, [](const WhitePatch& each) { return each.delta != 0 || each.height_mm; });
   if (is_newer) return "weft.lights/1.2";

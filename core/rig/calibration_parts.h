@@ -35,6 +35,7 @@ struct LightsPart {
   Lights lights;
   std::vector<WhitePatch> patches;
   std::optional<ParameterCovariance> covariance;
+  std::vector<FixedPoint> points;
 };
 void describe(Fields& fields, LightsPart& part);
 const char* schema_name(const LightsPart& part);

@@ -6,7 +6,9 @@
 
 #include <cmath>
 #include <string>
+#include <variant>
 
+#include "bench/oracles/oracle_rig.h"
 #include "tests/calibration/checks/moved_rig.h"
 
 namespace weft::calibration {
@@ -55,6 +57,48 @@ TEST(Movement, InventsNothingOnARigThatStoodStill) {
     EXPECT_TRUE(movement.changes.empty());
     EXPECT_LT(movement.chi_square_before, 1.5);
   });
+}
+
+/// Eight points along the edges of a table without tags, seen by a camera that was knocked.
+RigEvidence points_seen(const Calibration& rig, const CameraModel& camera, test::Random& random) {
+  RigEvidence evidence;
+  for (int i = 0; i < 8; ++i) {
+    const double sigma_px = 0.05 + 0.02 * i;
+    const Vec3 point = {25.0 * i - 87, i % 2 == 0 ? 55.0 : -55.0, 0};
+    const Vec3 p = project(camera, point);
+    evidence.points.push_back(
+        {point, {p.x + sigma_px * random.normal(), p.y + sigma_px * random.normal()}, sigma_px});
+  }
+  return evidence;
+}
+
+TEST(Movement, IsNotInventedByFixedPointsThatStoodStill) {
+  const Calibration rig = test::calibrated_rig();
+  test::Random random(1);
+  for (int draw = 0; draw < 300; ++draw) {
+    const Movement movement = found(rig, points_seen(rig, *rig.camera, random));
+    ASSERT_TRUE(movement.changes.empty()) << "draw " << draw << ": " << told(movement);
+    EXPECT_EQ(movement.points, 8);
+    EXPECT_EQ(movement.corners, 0);
+  }
+}
+
+TEST(Movement, IsToldByFixedPointsWithItsCost) {
+  const Calibration rig = test::calibrated_rig();
+  const NearLights& lights = std::get<NearLights>(*rig.lights);
+  test::Random random(2);
+  for (int draw = 0; draw < 30; ++draw) {
+    const double size_mm = 1 + 4 * random.uniform(), azimuth = 6.28 * random.uniform();
+    CameraModel camera = *rig.camera;
+    camera.camera_from_rig_translation_mm =
+        camera.camera_from_rig_translation_mm + size_mm * Vec3{std::cos(azimuth), std::sin(azimuth), 0};
+    const Movement movement = found(rig, points_seen(rig, camera, random));
+    ASSERT_EQ(movement.changes.size(), 1U) << told(movement);
+    EXPECT_EQ(movement.changes[0].kind, ChangeKind::kCamera);
+    const double cost = cost_of(*rig.camera, lights, movement.camera, lights).mean_deg,
+                 truth = cost_of(*rig.camera, lights, camera, lights).mean_deg;
+    EXPECT_NEAR(cost, truth, 0.02) << size_mm << " mm";
+  }
 }
 
 TEST(Movement, FindsTheTableTwoMillimetresLower) {
