@@ -29,9 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::steady_clock;
 
-constexpr int kBandRows = 128;      // of frames and truth, in memory at a time
-constexpr int kTallBandRows = 256;  // where tiles have a halo, which costs less the larger they are
-
 /// Adds the time it lives to a sum.
 class Stopwatch {
  public:

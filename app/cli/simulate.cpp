@@ -33,9 +33,9 @@ struct SimulateArguments {
   std::filesystem::path output;
   std::optional<int> led;  ///< one frame alone: a LED from 1, or 0 for the dark shot
   bool explain = false;
-  std::optional<double> to_sigma;  ///< in the place of the scene's own
-  bool captures = false;           ///< what calibrating the scene's rig needs, instead of one scan
-  std::vector<std::string> parts;  ///< of the captures; empty: all
+  std::optional<double> to_sigma, within_s;  ///< one of both, in the place of the scene's own tolerance
+  bool captures = false;                     ///< what calibrating the scene's rig needs, instead of one scan
+  std::vector<std::string> parts;            ///< of the captures; empty: all
 };
 
 /// What runs and what does not, known before the run.
@@ -139,12 +139,24 @@ Result<int> run_captures(const simulator::Scene& scene, const SimulateArguments&
   return kDone;
 }
 
-Result<int> run_session(const simulator::Scene& scene, const SimulateArguments& arguments,
+Result<int> run_session(simulator::Scene scene, const SimulateArguments& arguments,
                         const CommonArguments& common, const simulator::SimulateOptions& options) {
+  std::optional<simulator::TimelyPlan> chosen;
+  if (arguments.within_s) {
+    const Result<simulator::TimelyPlan> timely =
+        simulator::plan_within(scene, *arguments.within_s, {common.threads, options.stop});
+    if (!timely) return timely.error();
+    chosen = *timely;
+    scene.auto_to_sigma = chosen->to_sigma;
+  }
   if (arguments.explain && !common.json) {
     const Result<Explanation> explanation = explain(scene);
     if (!explanation) return explanation.error();
     print_plan(*explanation);
+  }
+  if (chosen && !common.json) {
+    print(fmt::format("effects to {:.3g} sigma, {:.2g} s of rendering foretold", chosen->to_sigma,
+                      chosen->seconds));
   }
   const Result<simulator::SimulationReport> report =
       simulator::simulate_session(scene, arguments.output, options);
@@ -156,6 +168,7 @@ Result<int> run_session(const simulator::Scene& scene, const SimulateArguments& 
     document["frames"] = report->frames;
     document["exposure_us"] = report->exposure_us;
     document["seconds"] = {{"render", report->render_seconds}, {"write", report->write_seconds}};
+    if (chosen) document["foretold"] = {{"to_sigma", chosen->to_sigma}, {"seconds", chosen->seconds}};
     document["peak_bytes"] = peak_memory_bytes();
     print_json(document);
     return kDone;
@@ -170,9 +183,11 @@ Result<int> run_session(const simulator::Scene& scene, const SimulateArguments& 
 Result<int> simulate(const SimulateArguments& arguments, const CommonArguments& common) {
   Result<simulator::Scene> scene = simulator::read_scene(arguments.scene);
   if (!scene) return scene.error();
-  if (arguments.to_sigma && !scene->auto_to_sigma) {
-    return Error{ErrorKind::kUsage, "the scene says itself which effects run", "--to",
-                 "it names them, and has no effects = \"auto\"", "leave --to away, or let them be \"auto\""};
+  if (const char* option = arguments.to_sigma ? "--to" : "--within";
+      (arguments.to_sigma || arguments.within_s) && !scene->auto_to_sigma) {
+    return Error{ErrorKind::kUsage, "the scene says itself which effects run", option,
+                 "it names them, and has no effects = \"auto\"",
+                 fmt::format("leave {} away, or let them be \"auto\"", option)};
   }
   if (arguments.to_sigma) scene->auto_to_sigma = arguments.to_sigma;
   ProgressLine line(common.quiet);
@@ -201,11 +216,20 @@ Run add_simulate(Options& options) {
                 "List the passes that run and why, the effects left out with what they would change and "
                 "cost, and after the run what each pass cost")
       .excludes(led);
-  options
-      .add("--to", &a->to_sigma,
-           "How far off a scene of effects = \"auto\" may be, in standard deviations of its noise: effects "
-           "whose bounds together stay below are left out; default the scene's")
-      .in_range(simulator::kAutomaticRange.least, simulator::kAutomaticRange.most);
+  const Option to = options
+                        .add("--to", &a->to_sigma,
+                             "How far off a scene of effects = \"auto\" may be, in standard deviations of "
+                             "its noise: effects "
+                             "whose bounds together stay below are left out; default the scene's")
+                        .in_range(simulator::kAutomaticRange.least, simulator::kAutomaticRange.most);
+  const Option within =
+      options
+          .add("--within", &a->within_s,
+               "Seconds that rendering the photographs of a scene of effects = \"auto\" may take: the least "
+               "--to that its middle foretells to be so quick")
+          .in_range(1e-3, 1e9)
+          .excludes(to)
+          .excludes(led);
   const Option captures =
       options
           .add("--captures", &a->parts,
@@ -213,7 +237,8 @@ Run add_simulate(Options& options) {
                "camera, response, color, lights, check")
           .by_commas()
           .takes(0, 6)
-          .excludes(led);
+          .excludes(led)
+          .excludes(within);
   return [a, captures](const CommonArguments& common) {
     a->captures = captures.is_given();
     std::erase_if(a->parts, [](const std::string& part) { return part.empty() || part == "all"; });

@@ -100,6 +100,12 @@ Result<void> PassRunner::run(Rect area, std::span<const int> shots, std::stop_to
   return done;
 }
 
+std::int64_t PassRunner::pixels_with_halos(Rect area) const {
+  std::int64_t pixels = 0;
+  for (const Rect tile : tiles_of(area, options_)) pixels += grown(tile, list_.halo).pixels();
+  return pixels;
+}
+
 std::vector<PassCost> PassRunner::costs() const {
   std::vector<PassCost> costs;
   for (std::size_t p = 0; p < list_.passes.size(); ++p) {

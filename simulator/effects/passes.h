@@ -125,6 +125,10 @@ struct PassCost {
   std::int64_t pixels = 0;
 };
 
+/// Rows of a session's frames that are run at a time; the taller where tiles have a halo, which costs less
+/// the larger they are.
+inline constexpr int kBandRows = 128, kTallBandRows = 256;
+
 /// Runs a list of passes over tiles and keeps account of the time of each.
 class PassRunner {
  public:
@@ -140,6 +144,9 @@ class PassRunner {
                    const std::function<void(const PassTile&)>& with_shot);
 
   std::vector<PassCost> costs() const;
+
+  /// Pixels of `area` as run() works on them, each tile with its halo.
+  std::int64_t pixels_with_halos(Rect area) const;
 
  private:
   struct Worker {

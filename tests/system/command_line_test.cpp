@@ -169,6 +169,30 @@ TEST_F(CommandLine, SimulateLeavesOutWhatATolerancePermits) {
   EXPECT_THAT(named.error, testing::HasSubstr("it names them"));
 }
 
+TEST_F(CommandLine, SimulateLeavesOutWhatTheTimeAsksFor) {
+  put_bytes(work_ / "auto.toml",
+            "effects = \"auto\"\n[camera]\nwidth = 48\nheight = 32\n[geometry]\nfamily = \"smooth\"\n");
+  const auto within = [&](double seconds, const std::string& name) {
+    return run_weft({"simulate", "auto.toml", "-o", name, "--within", fmt::format("{}", seconds), "--json"},
+                    {.folder = work_.path()});
+  };
+  const auto outcome = within(1000, "all.weft");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+  const Json all = outcome.json();
+  const double seconds = all.at("foretold").at("seconds");
+  EXPECT_EQ(all.at("foretold").at("to_sigma"), 0.001);
+  const auto tight = within(seconds / 2, "half.weft");
+  ASSERT_EQ(tight.exit_code, 0) << tight.error;
+  const Json half = tight.json();
+  EXPECT_LE(half.at("foretold").at("seconds"), seconds / 2);
+  EXPECT_GT(half.at("foretold").at("to_sigma"), 0.001);
+  EXPECT_GT(half.at("left_out").size(), all.at("left_out").size()) << tight.output;
+  const auto none = within(1e-3, "none.weft");
+  EXPECT_EQ(none.exit_code, 64);
+  EXPECT_THAT(none.output, testing::AllOf(testing::HasSubstr("no scene is that quick"),
+                                          testing::HasSubstr("fewer pixels")));
+}
+
 TEST_F(CommandLine, ExplainPricesWhatAutoLeavesOut) {
   put_bytes(work_ / "scene.toml",
             "effects = \"auto\"\nto = \"0.25 sigma\"\n[camera]\nwidth = 64\nheight = 64\n"
