@@ -113,6 +113,13 @@ std::vector<Stored> ways_of(const PresetFile& file) {
   return ways;
 }
 
+void add_planes(const PresetFile& file, std::set<MapPlane>& planes) {
+  for (const std::string& name : file.channels) {
+    const auto& of = channel_named(name)->planes;
+    planes.insert(of.begin(), of.end());
+  }
+}
+
 // What normals and albedo are in every format, to compare with.
 std::vector<PresetFile> everything() {
   std::vector<PresetFile> files;
@@ -139,19 +146,12 @@ std::vector<PresetFile> everything() {
   return files;
 }
 
-// All planes that the presets and the comparison need.
+// All planes that the presets need.
 std::set<MapPlane> needed(const std::vector<FilledPreset>& presets) {
   std::set<MapPlane> planes;
-  const auto add = [&](const PresetFile& file) {
-    for (const std::string& name : file.channels) {
-      const auto& of = channel_named(name)->planes;
-      planes.insert(of.begin(), of.end());
-    }
-  };
   for (const FilledPreset& preset : presets) {
-    for (const TextureToWrite& texture : preset.textures) add(texture.file);
+    for (const TextureToWrite& texture : preset.textures) add_planes(texture.file, planes);
   }
-  for (const PresetFile& file : everything()) add(file);
   return planes;
 }
 
@@ -176,20 +176,105 @@ Result<void> choose_for(TextureToWrite& texture, const Preset& preset, double to
                "allow more, or choose a preset of 16 bits or floats: png16, tiff16, exr"};
 }
 
+// The ways to store one file of normals, the quickest first, and the one that is taken.
+struct TimelyChoice {
+  TextureToWrite* texture = nullptr;
+  std::vector<ExportPrice> ways;
+  std::size_t taken = 0;
+};
+
+double pixels_over(Size size, Size whole) {
+  return static_cast<double>(size.pixels()) / static_cast<double>(whole.pixels());
+}
+
+Result<TimelyChoice> timely_choice(TextureToWrite& texture, const Preset& preset, double smaller,
+                                   Trials& trials) {
+  TimelyChoice choice;
+  choice.texture = &texture;
+  for (const Stored& way : ways_of(texture.file)) {
+    PresetFile file = texture.file;
+    file.stored = way;
+    Result<ExportPrice> price = trials.price(file, preset.roughness);
+    if (!price) return std::move(price).error();
+    price->seconds *= smaller;
+    choice.ways.push_back(std::move(*price));
+  }
+  std::ranges::sort(choice.ways, {}, &ExportPrice::seconds);
+  return choice;
+}
+
+// Where a second buys most degrees, until none fits.
+void spend(std::vector<TimelyChoice>& choices, double left_s) {
+  for (;;) {
+    TimelyChoice* bought = nullptr;
+    std::size_t way = 0;
+    double most = 0;
+    for (TimelyChoice& choice : choices) {
+      const ExportPrice& now = choice.ways[choice.taken];
+      for (std::size_t i = choice.taken + 1; i < choice.ways.size(); ++i) {
+        const double seconds = choice.ways[i].seconds - now.seconds;
+        const double gain = now.loss.normal->mean_deg - choice.ways[i].loss.normal->mean_deg;
+        const double rate = gain / std::max(seconds, 1e-9);
+        if (seconds > left_s || gain <= 0 || rate <= most) continue;
+        bought = &choice;
+        way = i;
+        most = rate;
+      }
+    }
+    if (bought == nullptr) return;
+    left_s -= bought->ways[way].seconds - bought->ways[bought->taken].seconds;
+    bought->taken = way;
+  }
+}
+
+Result<void> choose_within(PreparedExport& prepared, double within_s, Trials& trials,
+                           const JobContext& context) {
+  std::vector<TimelyChoice> choices;
+  double quickest_s = 0;
+  for (FilledPreset& preset : prepared.presets) {
+    const double smaller = pixels_over(preset.size, prepared.folder.size);
+    for (TextureToWrite& texture : preset.textures) {
+      if (context.stop.stop_requested()) return interrupted();
+      if (has_normals(texture.file)) {
+        Result<TimelyChoice> choice = timely_choice(texture, preset.preset, smaller, trials);
+        if (!choice) return std::move(choice).error();
+        quickest_s += choice->ways.front().seconds;
+        choices.push_back(std::move(*choice));
+      } else {
+        const Result<ExportPrice> price = trials.price(texture.file, preset.preset.roughness);
+        if (!price) return price.error();
+        quickest_s += smaller * price->seconds;
+      }
+    }
+  }
+  if (quickest_s > within_s) {
+    return Error{ErrorKind::kUsage, "the textures cannot be written so quickly",
+                 fmt::format("--within {:g} s", within_s),
+                 fmt::format("the quickest take one thread {:.2g} s", quickest_s),
+                 "allow more, or ask for fewer pixels by --size, or for fewer presets"};
+  }
+  spend(choices, within_s - quickest_s);
+  for (const TimelyChoice& choice : choices) choice.texture->file.stored = choice.ways[choice.taken].stored;
+  return {};
+}
+
 }  // namespace
 
 Result<void> choose_bits(PreparedExport& prepared, const JobContext& context) {
-  if (!prepared.options.to_deg) return {};
+  const std::optional<double> to_deg = prepared.options.to_deg, within_s = prepared.options.within_s;
+  if (!to_deg && !within_s) return {};
   const MapFolder& folder = prepared.folder;
   MapPlanes maps(folder, folder.size, context.threads);
-  if (Result<void> ok = maps.load({MapPlane::kNormalX}); !ok) return ok;
+  if (Result<void> ok = maps.load(within_s ? needed(prepared.presets) : std::set{MapPlane::kNormalX}); !ok)
+    return ok;
   const Piece piece = piece_of(maps, folder);
   Trials trials(piece);
+  if (within_s) return choose_within(prepared, *within_s, trials, context);
   for (FilledPreset& preset : prepared.presets) {
     for (TextureToWrite& texture : preset.textures) {
       if (!has_normals(texture.file)) continue;
       if (context.stop.stop_requested()) return interrupted();
-      Result<void> chosen = choose_for(texture, preset.preset, *prepared.options.to_deg, trials);
+      Result<void> chosen = choose_for(texture, preset.preset, *to_deg, trials);
       if (!chosen) return chosen;
     }
   }
@@ -202,13 +287,14 @@ Result<std::vector<ExportPrice>> price_exports(const ExportOptions& asked, const
   if (Result<void> ok = choose_bits(*prepared, context); !ok) return std::move(ok).error();
   const MapFolder& folder = prepared->folder;
   MapPlanes maps(folder, folder.size, context.threads);
-  if (Result<void> ok = maps.load(needed(prepared->presets)); !ok) return std::move(ok).error();
+  std::set<MapPlane> planes = needed(prepared->presets);
+  for (const PresetFile& file : everything()) add_planes(file, planes);
+  if (Result<void> ok = maps.load(planes); !ok) return std::move(ok).error();
   const Piece piece = piece_of(maps, folder);
   Trials trials(piece);
   std::vector<ExportPrice> prices;
   for (const FilledPreset& preset : prepared->presets) {
-    const double smaller =
-        static_cast<double>(preset.size.pixels()) / static_cast<double>(folder.size.pixels());
+    const double smaller = pixels_over(preset.size, folder.size);
     for (const TextureToWrite& texture : preset.textures) {
       if (context.stop.stop_requested()) return interrupted();
       Result<ExportPrice> price = trials.price(texture.file, preset.preset.roughness);
@@ -223,7 +309,8 @@ Result<std::vector<ExportPrice>> price_exports(const ExportOptions& asked, const
       price->file = texture.name;
       price->bytes *= smaller;
       price->seconds *= smaller;
-      price->is_chosen = prepared->options.to_deg && has_normals(texture.file);
+      price->is_chosen =
+          (prepared->options.to_deg || prepared->options.within_s) && has_normals(texture.file);
       prices.push_back(std::move(*price));
     }
   }

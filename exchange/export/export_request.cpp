@@ -45,6 +45,12 @@ void describe(Fields& fields, ExportRequest& r) {
                 .range = {1e-9, 90},
                 .units = {{"deg"}, {""}}},
                e.to_deg);
+  fields.value({.name = "within_s",
+                .says = "Seconds that writing the textures may take one thread: chooses the bits with which "
+                        "normals lose least",
+                .range = kAboveZero},
+               e.within_s);
+  fields.exclude("to_deg", "within_s");
 }
 
 }  // namespace weft::exchange

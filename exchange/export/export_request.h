@@ -25,6 +25,7 @@ struct ExportOptions {
   std::optional<int> size_px = {};           ///< of the longer side; none: as the preset has it
   bool is_dx10 = false;                      ///< DDS with DX10 headers alone
   std::optional<double> to_deg = {};         ///< normals lose at most this in the mean: chooses their bits
+  std::optional<double> within_s = {};       ///< of writing the textures by one thread: chooses them, too
 };
 
 /// What `weft export` and a job that exports are told.

@@ -505,6 +505,30 @@ TEST_F(Exports, ArePricedBeforeTheyAreMadeAndChooseTheirBits) {
   fs::remove_all(*work_ / "chosen");
 }
 
+TEST_F(Exports, ChooseTheBestBitsThatAreWrittenInTime) {
+  const std::vector<std::string> asked = {"export",    session_.string(), "--preset", "unreal",
+                                          "--explain", "--json",          "-q",       "--within"};
+  const auto within = [&](const std::string& seconds) {
+    std::vector<std::string> words = asked;
+    words.push_back(seconds);
+    return run_weft(words);
+  };
+  const Outcome unhurried = within("1000");
+  ASSERT_EQ(unhurried.exit_code, 0) << unhurried.error;
+  int chosen = 0;
+  const Json prices = unhurried.json();
+  for (const Json& row : prices["rows"]) {
+    if (!row["chosen"].get<bool>()) continue;
+    ++chosen;
+    EXPECT_EQ(row["encoding"], "png, 16 bits") << row;
+  }
+  EXPECT_EQ(chosen, 1);
+  const Outcome hurried = within("1e-9");
+  EXPECT_EQ(hurried.exit_code, 64);
+  EXPECT_THAT(hurried.output, testing::AllOf(testing::HasSubstr("cannot be written so quickly"),
+                                             testing::HasSubstr("--size")));
+}
+
 TEST_F(Exports, ListAndShowTheirPresets) {
   const Outcome listed = run_weft({"export", "--list"});
   ASSERT_EQ(listed.exit_code, 0) << listed.error;
