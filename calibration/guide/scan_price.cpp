@@ -287,6 +287,9 @@ void describe(Fields& fields, ShotsPrice& price) {
   fields.value(
       {.name = "bracket", .says = "Each LED once more at so many times the exposure", .need = kOrNull},
       price.list.bracket);
+  std::vector<std::string> films;
+  for (const Polariser state : price.list.polariser) films.emplace_back(name_of(state));
+  fields.value({"polariser", "How the films stand for each LED"}, films);
   fields.value({"shots", "Photographs"}, price.shots);
   fields.value({.name = "seconds", .says = "By the rig's last scan", .need = kOrNull}, price.seconds);
   fields.value({.name = "bytes", .says = "On the disk", .need = kOrNull}, price.bytes);

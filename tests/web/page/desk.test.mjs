@@ -130,8 +130,16 @@ test('the bill of a scan follows what is asked of it, and the scan takes what wa
   await bill.getByText(/^21 shots/).waitFor();
   await page.getByRole('button', {name: 'Other shots'}).click();
   await page.getByRole('list', {name: 'Other shots'}).getByText(/^10 LEDs, repeat: the one to buy$/).waitFor();
+  const repeated = page.getByRole('list', {name: 'Other shots'}).getByRole('button', {name: /^10 LEDs, repeat: /});
+  assert.equal(await repeated.getAttribute('aria-pressed'), 'false');
+  await repeated.focus();
+  await page.keyboard.press('Enter');
+  await bill.getByText(/^13 shots/).waitFor();
+  assert.equal(await repeated.getAttribute('aria-pressed'), 'true');
   assert.deepEqual(await violations(page), []);
   await picture(page, 'desk-bill');
+  await page.getByRole('button', {name: 'As the rig says'}).click();
+  await bill.getByText(/^21 shots/).waitFor();
 
   await page.reload();
   await page.getByLabel('Fabric').fill('billed');

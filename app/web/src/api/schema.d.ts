@@ -7129,6 +7129,8 @@ export interface components {
                 repeat: boolean;
                 /** @description Each LED once more at so many times the exposure */
                 bracket: number | null;
+                /** @description How the films stand for each LED */
+                polariser: string[];
                 /** @description Photographs */
                 shots: number;
                 /** @description By the rig's last scan */
@@ -7825,7 +7827,9 @@ export interface components {
             dx10?: boolean;
             /** @description Degrees that normals may lose in the mean, as 0.1 or 0.1deg: chooses their bits */
             to_deg?: number;
-        } & ((unknown | unknown) & unknown & {
+            /** @description Seconds that writing the textures may take one thread: chooses the bits with which normals lose least */
+            within_s?: number;
+        } & ((unknown | unknown) & unknown & unknown & {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -7862,7 +7866,9 @@ export interface components {
             dx10?: boolean;
             /** @description Degrees that normals may lose in the mean, as 0.1 or 0.1deg: chooses their bits */
             to_deg?: number;
-        } & ((unknown | unknown) & unknown & {
+            /** @description Seconds that writing the textures may take one thread: chooses the bits with which normals lose least */
+            within_s?: number;
+        } & ((unknown | unknown) & unknown & unknown & {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -7999,6 +8005,61 @@ export interface components {
              */
             most_focal_percent?: number;
         };
+        /** Price of more boards */
+        CalibrateCameraPriceJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "calibrate_camera_price";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Folder of photographs of one board in many poses; those named table... show it flat on the table; below the rig file's folder */
+            input: string;
+            /** @description Calibration whose other parts are kept; it is never changed; below the rig file's folder */
+            from?: string;
+            /** @description Folder of the new calibration, which must not exist; default none: only says what comes out; below the rig file's folder */
+            output?: string;
+            /**
+             * @description What is printed; default that of board.toml
+             * @enum {string}
+             */
+            board?: "charuco" | "checkerboard";
+            /** @description Squares a row */
+            squares_x?: number;
+            /** @description Squares a column */
+            squares_y?: number;
+            /** @description Side of a square, mm */
+            square_mm?: number;
+            /** @description ChArUco: side of a marker over that of a square */
+            marker_share?: number;
+            /** @description ChArUco: as OpenCV names it, DICT_5X5_100 */
+            dictionary?: string;
+            /** @description ChArUco: number of its first marker in the dictionary, 0 */
+            first_marker?: number;
+            /** @description Of the board: the table is so far below its print */
+            thickness_mm?: number;
+            /**
+             * @description Dictionary of the tags on the table
+             * @default DICT_APRILTAG_36h11
+             */
+            tags?: string;
+            /**
+             * @description Photographs with wider edges are left out, pixels
+             * @default 5
+             */
+            most_blur_px?: number;
+            /**
+             * @description Fewer usable photographs are refused
+             * @default 5
+             */
+            least_boards?: number;
+            /**
+             * @description Boards too alike are refused: predicted sigma of the focal length, percent
+             * @default 0.3
+             */
+            most_focal_percent?: number;
+        };
         /** Sensor */
         CalibrateResponseJob: {
             /**
@@ -8047,6 +8108,53 @@ export interface components {
              * @enum {string}
              */
             kind: "calibrate_lights";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Folder of sessions (*.weft) of a sheet with tags, sheet.toml and, where measured anew, rig.toml; below the rig file's folder */
+            input: string;
+            /** @description Calibration whose other parts are kept; it is never changed; below the rig file's folder */
+            from?: string;
+            /** @description Folder of the new calibration, which must not exist; default none: only says what comes out; below the rig file's folder */
+            output?: string;
+            /**
+             * @description physical (a model of each LED), per-pixel (directions cell by cell), seed (the iteration of the paper that this scanner follows, on one flat sheet)
+             * @default physical
+             * @enum {string}
+             */
+            method?: "physical" | "per-pixel" | "seed";
+            /**
+             * @description How well positions were measured, mm an axis
+             * @default 10
+             */
+            tape_sigma_mm?: number;
+            /**
+             * @description Rms waviness of the sheet, degrees
+             * @default 0.05
+             */
+            flatness_deg?: number;
+            /**
+             * @description Flicker of LEDs from shot to shot, percent, where sheets do not tell
+             * @default 0.3
+             */
+            flicker_percent?: number;
+            /**
+             * @description Take the paper to follow Lambert's law
+             * @default false
+             */
+            lambertian?: boolean;
+            /**
+             * @description Write the calibration although readings and model contradict each other
+             * @default false
+             */
+            accept_misfit?: boolean;
+        };
+        /** Price of more sheets */
+        CalibrateLightsPriceJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "calibrate_lights_price";
             /** @description A plain word: the same once more is the same job, and asks nothing new */
             request_id?: string;
             /** @description Folder of sessions (*.weft) of a sheet with tags, sheet.toml and, where measured anew, rig.toml; below the rig file's folder */
@@ -8239,7 +8347,7 @@ export interface components {
             /** @description That a session may hold, else it is lost alone: 1500M, 2G */
             memory_mb?: number;
         };
-        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["SampleJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["RigCheckJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["FinishPriceJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
+        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["SampleJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["RigCheckJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["FinishPriceJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateCameraPriceJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateLightsPriceJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
     };
     responses: {
         /** @description Not a request that can be read */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {expect, test} from 'vitest';
-import {scanRequestOf, tagsOf} from '../../../../app/web/src/screens/desk/cloth';
+import {scanRequestOf, tagsOf, withShots} from '../../../../app/web/src/screens/desk/cloth';
 
 const unsaid = {fabric: 'wool', id: '', tags: '', height_mm: '', exposure_ms: ''};
 const shots = {repeat: true, bracket: ''};
@@ -25,4 +25,11 @@ test('a barcode and tags are metadata', () => {
 test('that there is no repeat is said, and a bracket where there is one', () => {
   expect(scanRequestOf(unsaid, {repeat: false, bracket: '0,25'})).toEqual({fabric: 'wool', repeat: false, bracket: 0.25});
   expect(scanRequestOf(unsaid, {repeat: false, bracket: ' '})).not.toHaveProperty('bracket');
+});
+
+test('shots that were bought stand in the place of those that the form has', () => {
+  const request = {...scanRequestOf(unsaid, {repeat: true, bracket: '4'}), metadata: {id: '4006'}};
+  const taken = JSON.parse(JSON.stringify(withShots(request, {leds: [1, 4, 7], repeat: false, bracket: null, polariser: []})));
+  expect(taken).toEqual({fabric: 'wool', metadata: {id: '4006'}, leds: [1, 4, 7], repeat: false});
+  expect(withShots(request, {leds: [1], repeat: true, bracket: 16, polariser: ['crossed']})).toMatchObject({bracket: 16, polariser: ['crossed']});
 });

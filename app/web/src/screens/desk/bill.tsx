@@ -4,8 +4,10 @@ import {useState} from 'preact/hooks';
 import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
+import {Offers} from '../../ui/offers';
 import {counted, degrees, degreesOn} from '../../ui/say';
 import {durationOf} from '../../ui/words';
+import {bought} from './cloth';
 
 export type BillLine = Schemas['BillLine'];
 
@@ -35,25 +37,22 @@ const names: Record<BillLine['what'], string> = {
 };
 
 /** What else may be bought, asked for once: the lights, the calibration and the last scan tell it. */
-export function Offers({request}: {request: Schemas['ScanRequest']}) {
+export function OtherShots({request}: {request: Schemas['ScanRequest']}) {
   const [offers, take] = useState<Schemas['ScanPrices'] | ApiError | null>(null);
   if (!offers) {
     return <Button kind="quiet" onClick={() => void answer(api.POST('/api/v1/scan/price', {body: request})).catch(asApiError).then(take)}>Other shots</Button>;
   }
   if (offers instanceof Error) return <Complaint error={offers} />;
   return (
-    <ul aria-label="Other shots">
-      {offers.rows.map((row) => (
-        <li key={row.what}>
-          <p class="line">
-            {row.chosen ? <strong>{row.what}: the one to buy</strong> : row.what}
-            <span class="numbers">{row.predicted_deg !== null && `${degreesOn(row.predicted_deg, row.solved)}, `}{costInWords(row.shots, row.seconds)}</span>
-          </p>
-          {row.asked && <p class="dim">As asked for.</p>}
-        </li>
-      ))}
+    <Offers label="Other shots" offers={offers.rows.map((row) => ({
+      says: row.what,
+      figures: (row.predicted_deg === null ? '' : `${degreesOn(row.predicted_deg, row.solved)}, `) + costInWords(row.shots, row.seconds),
+      isBest: row.chosen,
+      isTaken: bought.value ? bought.value.what === row.what : row.asked,
+      take: () => { bought.value = row.asked ? null : row; },
+    }))}>
       {offers.notes.map((note) => <li key={note} class="dim">{note}</li>)}
-    </ul>
+    </Offers>
   );
 }
 

@@ -17,6 +17,10 @@ export interface Cloth {
 const nothing: Cloth = {fabric: '', id: '', tags: '', height_mm: '', exposure_ms: ''};
 export const cloth = signal<Cloth>(nothing);
 
+type Shots = Schemas['ScanPrices']['rows'][number];
+/** Other shots that a person took, of this cloth as of the next; null: as the rig says. */
+export const bought = signal<Shots | null>(null);
+
 export function say(change: Partial<Cloth>): void {
   cloth.value = {...cloth.value, ...change};
 }
@@ -57,4 +61,9 @@ export function scanRequestOf({fabric, id, tags, height_mm, exposure_ms}: Cloth,
     ...(exposure_us !== null && {exposure_us}),
     ...(share !== null && {bracket: share}),
   };
+}
+
+/** The shots of a price, in the place of those that the request asks for. */
+export function withShots(request: Schemas['ScanRequest'], {leds, repeat, bracket, polariser}: Pick<Shots, 'leds' | 'repeat' | 'bracket' | 'polariser'>): Schemas['ScanRequest'] {
+  return {...request, leds, repeat, bracket: bracket ?? undefined, ...(polariser.length > 0 && {polariser})} as Schemas['ScanRequest'];
 }

@@ -3,12 +3,13 @@
 import type {Signal} from '@preact/signals';
 import {hasTone} from '../../state/tone';
 import {Complaint} from '../../ui/complaint';
+import {Button} from '../../ui/button';
 import {Field} from '../../ui/field';
-import {BillView, Offers} from './bill';
-import {cloth, say} from './cloth';
+import {BillView, OtherShots} from './bill';
+import {bought, cloth, say} from './cloth';
 import {millisecondsOf} from './exposure';
 import {bracket, repeats} from './preferences';
-import {chosen, proposal, scanRequest, times_us} from './proposal';
+import {asked, chosen, proposal, times_us} from './proposal';
 
 export const exposureField = 'exposure';
 
@@ -43,13 +44,14 @@ function Check({says, of}: {says: string; of: Signal<boolean>}) {
 
 /** Kept from cloth to cloth. */
 function MoreShots({onSaid}: {onSaid: () => void}) {
+  const shots = bought.value;
   return (
     <div class="pair">
       <div>
-        <Check says="Repeat" of={repeats} />
+        {shots ? <strong>{shots.what}</strong> : <Check says="Repeat" of={repeats} />}
         <Check says="Tone at its end" of={hasTone} />
       </div>
-      <Field label="Bracket" type="number" unit="×" placeholder="none" value={bracket.value} onInput={(value) => { bracket.value = value; }} onEnter={onSaid} />
+      {shots ? <Button kind="quiet" onClick={() => { bought.value = null; }}>As the rig says</Button> : <Field label="Bracket" type="number" unit="×" placeholder="none" value={bracket.value} onInput={(value) => { bracket.value = value; }} onEnter={onSaid} />}
     </div>
   );
 }
@@ -69,7 +71,7 @@ export function ClothForm({onSaid}: {onSaid: () => void}) {
       </div>
       <MoreShots onSaid={onSaid} />
       {proposal.value.would?.bill && <BillView bill={proposal.value.would.bill} />}
-      {proposal.value.would?.bill && <div class="bill"><Offers key={JSON.stringify(scanRequest.value)} request={scanRequest.value} /></div>}
+      {proposal.value.would?.bill && <div class="bill"><OtherShots key={JSON.stringify(asked.value)} request={asked.value} /></div>}
     </form>
   );
 }

@@ -3,7 +3,7 @@
 import {computed, effect, signal} from '@preact/signals';
 import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
 import {rig} from '../../state/rig';
-import {cloth, scanRequestOf} from './cloth';
+import {bought, cloth, scanRequestOf, withShots} from './cloth';
 import {chosenIn} from './exposure';
 import {bracket, repeats} from './preferences';
 
@@ -13,7 +13,9 @@ export const times_us = computed(() => JSON.parse(listed.value) as number[]);
 /** What the exposure that is typed comes to. */
 export const chosen = computed(() => chosenIn(cloth.value.exposure_ms, times_us.value));
 
-export const scanRequest = computed(() => scanRequestOf(cloth.value, {repeat: repeats.value, bracket: bracket.value}, times_us.value));
+/** As the form and the rig file have it. */
+export const asked = computed(() => scanRequestOf(cloth.value, {repeat: repeats.value, bracket: bracket.value}, times_us.value));
+export const scanRequest = computed(() => (bought.value ? withShots(asked.value, bought.value) : asked.value));
 
 export interface Proposal {
   /** Its name and its bill, and whether it goes on with one that is there. */
