@@ -180,6 +180,11 @@ test('after each sheet the page says what the lights would be so far', async (t)
     await soFar(/from 3 photographed sheets/);
     const {jobs} = await rig.ask('jobs?limit=10');
     assert.deepEqual(jobs.map(({kind, wants}) => [kind, wants.output]), Array(3).fill(['calibrate_lights', undefined]), 'one a sheet');
+    await page.getByRole('button', {name: 'What more poses buy'}).click();
+    const more = page.getByRole('list', {name: 'More poses'}).getByRole('listitem');
+    await more.nth(4).getByText(/^13 poses, 10 more/).waitFor({timeout: calculation_ms});
+    assert.match(await more.first().innerText(), /^3 poses\s+[0-9.]+ mm, [0-9.]+°$/);
+    await picture(page, 'calibrate_more_poses');
     await page.getByRole('button', {name: 'Enough: calculate with these'}).waitFor();
     await visitor.leave();
   } finally {

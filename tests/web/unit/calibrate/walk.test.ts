@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {describe, expect, test} from 'vitest';
 import {
-  currentStage, findingsIn, freeName, fromOf, isUnharmed, jobOf, madeBy, notesBeside, requestOf, stagesOf, standingOf, trialOf, walkOfSet, walksIn,
+  currentStage, findingsIn, freeName, fromOf, isUnharmed, jobOf, madeBy, notesBeside, posesIn, requestOf, stagesOf, standingOf, trialsOf, walkOfSet, walksIn,
   type CheckResult, type Known, type Listed, type Walk, type Walks, type WalkStage,
 } from '../../../../app/web/src/screens/calibrate/walk';
 import type {Job} from '../../../../app/web/src/screens/jobs/queue';
@@ -158,15 +158,35 @@ describe('a trial of the lights', () => {
   const known = {...bare, calibrations: [rigs, listed('calibrations/first-response')]};
 
   test('is of the sheets that are used, by the result before, and writes nothing', () => {
-    expect(trialOf(all, lights, sheets(['sheet01', true], ['sheet02', false], ['sheet03', true]), known)).toEqual({
-      kind: 'calibrate_lights', input: 'sets/first-sheet', from: 'calibrations/first-response', request_id: 'first-sheet.sheet01.sheet03',
-    });
+    const inputs = {input: 'sets/first-sheet', from: 'calibrations/first-response'};
+    expect(trialsOf(all, lights, sheets(['sheet01', true], ['sheet02', false], ['sheet03', true]), known)).toEqual([
+      {...inputs, kind: 'calibrate_lights', request_id: 'first-sheet.calibrate_lights.sheet01.sheet03'},
+      {...inputs, kind: 'calibrate_lights_price', request_id: 'first-sheet.calibrate_lights_price.sheet01.sheet03'},
+    ]);
   });
 
   test('is none before a sheet is used, nor once no more is wanted, nor of another stage', () => {
-    expect(trialOf(all, lights, sheets(['sheet01', false]), known)).toBeNull();
-    expect(trialOf(all, lights, {...sheets(['sheet01', true]), next: null}, known)).toBeNull();
-    expect(trialOf(all, stage(all, 'check'), sheets(['turned', true]), known)).toBeNull();
+    expect(trialsOf(all, lights, sheets(['sheet01', false]), known)).toEqual([]);
+    expect(trialsOf(all, lights, {...sheets(['sheet01', true]), next: null}, known)).toEqual([]);
+    expect(trialsOf(all, stage(all, 'check'), sheets(['turned', true]), known)).toEqual([]);
+  });
+
+  test('of boards, tells what more would buy from the third on', () => {
+    const camera = stage(all, 'camera');
+    const boards = (count: number) => sheets(...Array.from({length: count}, (_, i): [string, boolean] => [`board0${i}`, true]));
+    expect(trialsOf(all, camera, boards(2), known)).toEqual([]);
+    expect(trialsOf(all, camera, boards(3), known).map(({kind}) => kind)).toEqual(['calibrate_camera_price']);
+  });
+
+  test('says what more poses cost and give', () => {
+    const rows = [
+      {poses: 6, more: 0, rig_s: 0, predicted_deg: 0.041, place_mm: 0.092, position_mm: null, chosen: false},
+      {poses: 8, more: 2, rig_s: 40, predicted_deg: 0.031, place_mm: 0.07, position_mm: null, chosen: true},
+    ];
+    expect(posesIn({rows})).toEqual([
+      {says: '6 poses', figures: '0.092 mm, 0.041°', isBest: false},
+      {says: '8 poses, 2 more', figures: '0.070 mm, 0.031°, 40 s', isBest: true},
+    ]);
   });
 
   test('leaves the stage as it was', () => {

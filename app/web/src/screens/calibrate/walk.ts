@@ -2,7 +2,10 @@
 // The way from photographs to a calibration that the rig scans with. Where a walk stands is what lies beside the rig
 // file: sets/NAME-..., calibrations/NAME-...; so any browser goes on with it.
 import type {Schemas} from '../../api/client';
-import {textIn} from '../../ui/fields';
+import {fieldsOf, listIn, numberIn, textIn} from '../../ui/fields';
+import type {Offer} from '../../ui/offers';
+import {counted, degrees, digits} from '../../ui/say';
+import {durationOf} from '../../ui/words';
 import type {Job} from '../jobs/queue';
 import type {PhotographSet} from './photograph_set';
 
@@ -130,14 +133,18 @@ export function requestOf(walk: Walk, stage: WalkStage, known: Known): JobReques
   return {...inputsOf(walk, stage, known), output: folderOf(walk, stage)} as JobRequest;
 }
 
+/** Poses from which each part is known at all. */
+const fewest: Partial<Record<Part, number>> = {sheet: 1, board: 3};
+
 /**
- * What the sheets by now would give of the lights, while more are wanted: a job that writes nothing. The same sheets are
- * the same job, whoever looks. Null: there is nothing to be told.
+ * What the sheets by now would give of the lights, and what more sheets or boards would: jobs that write nothing, while
+ * more are wanted. The same photographs are the same jobs, whoever looks.
  */
-export function trialOf(walk: Walk, stage: WalkStage, set: PhotographSet, known: Known): JobRequest | null {
+export function trialsOf(walk: Walk, stage: WalkStage, set: PhotographSet, known: Known): JobRequest[] {
   const used = set.photographs.filter((photograph) => photograph.used).map(({name}) => name);
-  if (stage.part !== 'sheet' || set.next === null || used.length === 0) return null;
-  return {...inputsOf(walk, stage, known), request_id: [setOf(walk, stage), ...used].join('.')} as JobRequest;
+  if (set.next === null || used.length < (fewest[stage.part] ?? Infinity)) return [];
+  const kinds = [...(stage.part === 'sheet' ? [stage.job] : []), `${stage.job}_price`];
+  return kinds.map((kind) => ({...inputsOf(walk, stage, known), kind, request_id: [setOf(walk, stage), kind, ...used].join('.')}) as JobRequest);
 }
 
 /** Walks that were begun, the newest first: results beside the rig file carry their names. */
@@ -193,4 +200,16 @@ export function notesBeside(notes: readonly string[], findings: readonly WalkFin
 
 export function findingsIn(verdicts: readonly unknown[]): WalkFinding[] {
   return verdicts.map((each) => ({text: textIn(each, 'text'), remedy: textIn(each, 'remedy')}));
+}
+
+/** What a price says of more poses: "6 poses, 2 more", "0.07 mm, 0.03°, 40 s". */
+export function posesIn(result: unknown): Offer[] {
+  return listIn(result, 'rows').map((row) => {
+    const [poses, more, rig_s, deg, place_mm, position_mm] = ['poses', 'more', 'rig_s', 'predicted_deg', 'place_mm', 'position_mm'].map((key) => numberIn(row, key));
+    return {
+      says: counted(poses ?? 0, 'pose') + (more ? `, ${more} more` : ''),
+      figures: `${digits(place_mm ?? position_mm ?? 0)} mm, ${degrees(deg ?? 0)}` + (more ? `, ${durationOf(rig_s ?? 0)}` : ''),
+      isBest: fieldsOf(row)['chosen'] === true,
+    };
+  });
 }

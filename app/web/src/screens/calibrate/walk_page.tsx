@@ -7,6 +7,7 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {textIn} from '../../ui/fields';
 import {Mark, type Verdict} from '../../ui/mark';
+import {Offers} from '../../ui/offers';
 import {jobs, queueJob} from '../jobs/jobs';
 import {errorOf} from '../jobs/price';
 import {stateOf} from '../jobs/queue';
@@ -16,7 +17,7 @@ import {Calculation} from './calculation';
 import {complaint, isKnown, known, work} from './calibrations';
 import {SetPanel} from './set_panel';
 import {
-  currentStage, hasResult, isUnharmed, madeBy, setOf, stagesOf, standingOf, trialOf, type JobRequest, type Standing, type Walk, type WalkStage,
+  currentStage, hasResult, isUnharmed, madeBy, posesIn, setOf, stagesOf, standingOf, trialsOf, type JobRequest, type Standing, type Walk, type WalkStage,
 } from './walk';
 
 const marks: Record<Standing, {verdict: Verdict; says: string}> = {
@@ -75,8 +76,13 @@ function StagePanel({walk, stage}: {walk: Walk; stage: WalkStage}) {
   const isOver = hasResult(standing);
   const isToPhotograph = !isOver && !stage.is_photographed;
   const isBegun = set?.photographs.some((photograph) => photograph.used) ?? false;
-  const trial = set && trialOf(walk, stage, set, known.value);
-  const soFar = trial && <SoFar key={trial.request_id} trial={trial} />;
+  const trials = set ? trialsOf(walk, stage, set, known.value) : [];
+  const soFar = trials.length > 0 && (
+    <section class="so-far" aria-labelledby="so-far-title">
+      <h3 id="so-far-title">So far</h3>
+      {trials.map((trial) => <Trial key={trial.request_id} trial={trial} />)}
+    </section>
+  );
   const calculation = !stage.is_aside && <Calculation walk={walk} stage={stage} isEnough={stage.is_photographed || (set?.done ?? false)} />;
   return (
     <>
@@ -89,21 +95,24 @@ function StagePanel({walk, stage}: {walk: Walk; stage: WalkStage}) {
   );
 }
 
-/** What the photographs by now would give, which tells whether one more is worth its while. It asks for one trial. */
-function SoFar({trial}: {trial: JobRequest}) {
+/** What the photographs by now would give; once a person asks for it, what more of them would. */
+function Trial({trial}: {trial: JobRequest}) {
   const [id, know] = useState<string | null>(null);
   const [refused, refuse] = useState<ApiError | null>(null);
+  const [isWanted, want] = useState(!trial.kind.endsWith('_price'));
   useEffect(() => {
-    queueJob(trial).then((job) => know(job.id), (error: unknown) => refuse(asApiError(error)));
-  }, []);
+    if (isWanted) queueJob(trial).then((job) => know(job.id), (error: unknown) => refuse(asApiError(error)));
+  }, [isWanted]);
   const job = jobs.value.find((each) => each.id === id);
+  const says = job && (job.state === 'done' ? textIn(job.result, 'summary') : stateOf(job));
   return (
-    <section class="so-far" aria-labelledby="so-far-title">
-      <h3 id="so-far-title">So far</h3>
-      {job && <p role="status">{job.state === 'done' ? textIn(job.result, 'summary') : stateOf(job)}</p>}
+    <>
+      {!isWanted && <Button kind="quiet" onClick={() => want(true)}>What more poses buy</Button>}
+      {says && <p role="status">{says}</p>}
+      <Offers label="More poses" offers={posesIn(job?.result)} />
       {job?.state === 'failed' && <Complaint error={errorOf(job)} />}
       <Complaint error={refused} />
-    </section>
+    </>
   );
 }
 
