@@ -147,6 +147,25 @@ test('a recipe is looked at as it is changed, beside the cloth before, and all m
   await visitor.leave();
 });
 
+test('coarser grids are priced where all maps are asked for, and a click takes one', async () => {
+  const visitor = await visit(browser, archive);
+  const page = await openFinish(visitor);
+  await page.getByRole('button', {name: 'What each grid costs'}).click();
+  const grids = page.getByRole('list', {name: 'Grids'}).getByRole('button');
+  await grids.nth(2).waitFor({timeout: making_ms});
+  assert.match(await grids.nth(2).innerText(), /^0\.05\d* mm a pixel, \d+ × \d+: the one to buy\s*0° lost, [0-9.]+ s$/);
+  await grids.nth(1).press('Enter');
+  assert.equal(await grids.nth(1).getAttribute('aria-pressed'), 'true');
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'finish_grids');
+  await page.getByRole('button', {name: 'Finish: make all maps'}).click();
+  await page.waitForURL(/viewer\/weave\/maps\/[0-9a-f]+\?.*panel=why/, {timeout: making_ms});
+  const {kind, result} = await newestJob();
+  assert.equal(kind, 'maps');
+  assert.ok(Math.abs(result.mm_per_pixel - 0.1) < 0.005, `${result.mm_per_pixel} mm`);
+  await visitor.leave();
+});
+
 test('a tile is seen twice a side, with its repeat in millimetres on the cloth that it was cut from', async () => {
   const visitor = await visit(browser, archive);
   const page = await openFinish(visitor);

@@ -2,7 +2,7 @@
 // Finishing: what is done to the maps of a solve step by step, with a preview of it, and all maps in the end.
 import './finish.css';
 import {useEffect, useMemo, useRef, useState} from 'preact/hooks';
-import {answer, api, asApiError} from '../../api/client';
+import {answer, api, asApiError, type Schemas} from '../../api/client';
 import type {Repeat} from '../../gl/tiles';
 import {go} from '../../state/address';
 import {formOf} from '../../state/forms';
@@ -12,11 +12,14 @@ import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
-import {fieldsOf, listIn, textIn} from '../../ui/fields';
+import {fieldsOf, listIn, numberIn, textIn} from '../../ui/fields';
 import {Mark} from '../../ui/mark';
+import {Offers} from '../../ui/offers';
 import {type Wish, wordsOf} from '../../ui/request_schema';
+import {degrees, digits} from '../../ui/say';
 import {More} from '../../ui/schema_form';
 import {Share} from '../../ui/share';
+import {durationOf} from '../../ui/words';
 import {cancel, jobs, queueJob, useJobs} from '../jobs/jobs';
 import {errorOf} from '../jobs/price';
 import {hasEnded, type Job} from '../jobs/queue';
@@ -24,7 +27,7 @@ import type {Maps} from '../viewer/maps';
 import {addressOfViewer, FIRST_SIGHT, type SolveName, textOf} from '../viewer/sight';
 import type {Viewer} from '../viewer/viewer';
 import {StepFacts, StepPictures, Verdicts} from './found';
-import {type Of, requestOf, usePreview} from './making';
+import {jobWith, type Of, requestOf, usePreview} from './making';
 import {Draft, keysOfBox, moved, type Recipe, recipeOfSet, type Recipes, type Spot, type Step, stepOf, withKeys, without} from './recipe';
 import {StepForm} from './step_form';
 
@@ -185,11 +188,41 @@ function Progress({label, job}: {label: string; job: Job}) {
   );
 }
 
+interface GridsProps {
+  of: Of;
+  recipe: Recipe;
+  taken_mm: number | null;
+  onTake: (mm: number | null) => void;
+}
+
+/** What the recipe takes on coarser grids, and what they lose: asked for by a click. */
+function Grids({of, recipe, taken_mm, onTake}: GridsProps) {
+  const [id, setId] = useState('');
+  const price = useAction(async () => setId((await queueJob({...requestOf(of, recipe, false), kind: 'finish_price'} as Schemas['FinishPriceJob'])).id));
+  const job = jobWith(id);
+  const rows = listIn(job?.result, 'rows').map((row) => ({
+    mm: numberIn(row, 'mm_per_pixel') ?? 0, size: `${numberIn(row, 'width')} × ${numberIn(row, 'height')}`,
+    seconds: numberIn(row, 'seconds') ?? 0, lost_deg: numberIn(row, 'lost_deg') ?? 0, isBest: fieldsOf(row)['chosen'] === true,
+  }));
+  return (
+    <>
+      {rows.length === 0 && <Button kind="quiet" isDisabled={price.isBusy || (job !== null && !hasEnded(job))} onClick={() => void price.run()}>What each grid costs</Button>}
+      {job && !hasEnded(job) && <Progress label="Grids" job={job} />}
+      <Complaint error={price.complaint ?? (job?.state === 'failed' ? errorOf(job) : null)} />
+      <Offers label="Grids" offers={rows.map(({mm, size, seconds, lost_deg, isBest}) => ({
+        says: `${digits(mm, 3)} mm a pixel, ${size}`, figures: `${degrees(lost_deg)} lost, ${durationOf(seconds)}`, isBest,
+        isTaken: mm === taken_mm, take: () => onTake(mm === taken_mm ? null : mm),
+      }))} />
+    </>
+  );
+}
+
 /** All maps, at the size of the photographs. */
 function MakeAll({of, recipe}: {of: Of; recipe: Recipe}) {
   const [wish, setWish] = useState<Wish>({});
   const [begun, setBegun] = useState('');
-  const make = useAction(async () => setBegun((await queueJob({...requestOf(of, recipe, false), ...wish})).id));
+  const [grid_mm, setGrid] = useState<number | null>(null);
+  const make = useAction(async () => setBegun((await queueJob({...requestOf(of, recipe, false), ...wish, ...(grid_mm && {mm_per_pixel: grid_mm})})).id));
   const job = jobs.value.find(({kind, of: session}) => kind === 'maps' && session === of.session);
   const isBusy = job !== undefined && !hasEnded(job);
   const made = job?.id === begun && job.state === 'done' ? job.result : null;
@@ -199,7 +232,8 @@ function MakeAll({of, recipe}: {of: Of; recipe: Recipe}) {
   }, [made]);
   return (
     <>
-      <More of="the maps" schema={formOf('maps')} wish={wish} onWish={setWish} without={saidHere} />
+      <More of="the maps" schema={formOf('maps')} wish={wish} onWish={setWish} without={grid_mm ? [...saidHere, 'mm_per_pixel'] : saidHere} />
+      <Grids key={JSON.stringify([of, recipe])} of={of} recipe={recipe} taken_mm={grid_mm} onTake={setGrid} />
       <div class="row">
         <Button kind="main" isDisabled={make.isBusy || isBusy} onClick={() => void make.run()}>Finish: make all maps</Button>
       </div>
