@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
+#include <cstddef>
 
 #include "core/base/json_document.h"
 #include "core/base/vec.h"
 #include "core/describe/field_json.h"
+#include "core/rig/cloth_kinds.h"
 #include "solve/report/reflectance_facts.h"
 
 namespace weft::calibration {
@@ -31,9 +32,8 @@ Lobe pile_lobe(double alpha, double f0) {
   return {.family = LobeFamily::kCloth, .alpha = alpha, .f0 = f0};
 }
 
-NamedCloth cloth_by(std::string name, const Lobe& lobe, double albedo, double weft_share) {
-  return {std::move(name),
-          {.lobe = lobe, .albedo = albedo, .relief_deg = kPlanRelief_deg, .weft_share = weft_share}};
+solver::ForeseenCloth cloth_of(const Lobe& lobe, double albedo, double weft_share = 0) {
+  return {.lobe = lobe, .albedo = albedo, .relief_deg = kPlanRelief_deg, .weft_share = weft_share};
 }
 
 Error not_a_lobe(const std::filesystem::path& file, std::string why) {
@@ -82,18 +82,17 @@ Result<Lobe> lobe_of(const solve::LobeCluster& cluster, const std::filesystem::p
 }  // namespace
 
 const std::vector<NamedCloth>& planned_cloths() {
-  static const std::vector<NamedCloth> cloths = {
-      cloth_by("cotton", {}, 0.57, 0), cloth_by("wool", pile_lobe(0.7, 0.046), 0.24, 0),
-      cloth_by("velvet", pile_lobe(0.3, 0.05), 0.012, 0),
-      cloth_by("satin", satin_lobe(0.45, 0.35), 0.4, kSatinWeft),
-      cloth_by("dark-satin", satin_lobe(0.35, 0.4), 0.06, kSatinWeft)};
+  static const std::vector<NamedCloth> cloths = [] {
+    const std::array assumed = {
+        cloth_of({}, 0.57), cloth_of(pile_lobe(0.7, 0.046), 0.24), cloth_of(pile_lobe(0.3, 0.05), 0.012),
+        cloth_of(satin_lobe(0.45, 0.35), 0.4, kSatinWeft), cloth_of(satin_lobe(0.35, 0.4), 0.06, kSatinWeft)};
+    static_assert(assumed.size() == kClothKinds.size());
+    std::vector<NamedCloth> all;
+    for (std::size_t i = 0; i < kClothKinds.size(); ++i)
+      all.push_back({std::string(kClothKinds[i]), assumed[i]});
+    return all;
+  }();
   return cloths;
-}
-
-std::vector<std::string> planned_cloth_names() {
-  std::vector<std::string> names;
-  for (const NamedCloth& each : planned_cloths()) names.push_back(each.name);
-  return names;
 }
 
 Result<NamedCloth> cloth_of_reflectance(const std::filesystem::path& file, std::optional<double> albedo) {
@@ -107,7 +106,7 @@ Result<NamedCloth> cloth_of_reflectance(const std::filesystem::path& file, std::
   const double of_pixels = albedo.value_or(kUnknownAlbedo);
   const Result<Lobe> lobe = lobe_of(*cluster, file, of_pixels);
   if (!lobe) return lobe.error();
-  return cloth_by(name_of(lobe->family), *lobe, of_pixels, cluster->weft_share.value_or(0));
+  return NamedCloth{name_of(lobe->family), cloth_of(*lobe, of_pixels, cluster->weft_share.value_or(0))};
 }
 
 }  // namespace weft::calibration

@@ -17,9 +17,8 @@ struct NamedCloth {
   solver::ForeseenCloth cloth;
 };
 
-/// Cloths by name; plausible, not measured (docs/reflectance.md).
+/// The cloths that kClothKinds names; plausible, not measured (docs/reflectance.md).
 const std::vector<NamedCloth>& planned_cloths();
-std::vector<std::string> planned_cloth_names();
 
 /// The first observable lobe of a reflectance.json (schema weft.reflectance/1). One whose f0 is known only
 /// over the albedo takes `albedo`. kBadData where nothing was observable.

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/rig/cloth_kinds.h"
 namespace weft::calibration {
 namespace {
 
@@ -38,7 +39,9 @@ void describe(Fields& fields, RigPlanRequest& r) {
        .option = "",
        .said = Said::kAtThisMachine},
       r.plan.rig);
-  fields.value({.name = "cloth", .says = "What is to be scanned", .words = planned_cloth_names()}, r.cloth);
+  fields.value(
+      {.name = "cloth", .says = "What is to be scanned", .words = {kClothKinds.begin(), kClothKinds.end()}},
+      r.cloth);
   fields.value(
       {.name = "reflectance", .says = "reflectance.json of a solve: its first lobe", .path = PathTo::kFile},
       r.reflectance);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "calibration/guide/planned_cloth.h"
 #include "core/describe/described_fields.h"
+#include "core/rig/cloth_kinds.h"
 
 namespace weft::material {
 namespace {
@@ -61,7 +61,7 @@ void describe_derived(Fields& fields, DeriveOptions& d) {
   fields.value({"directions", "Of the occlusion's lines, 4 to 64", {4, 64}}, d.directions);
   fields.value({.name = "cloth",
                 .says = "Whose lobe is typed where the photographs tell none; default the session's kind",
-                .words = calibration::planned_cloth_names()},
+                .words = {kClothKinds.begin(), kClothKinds.end()}},
                d.cloth);
 }
 

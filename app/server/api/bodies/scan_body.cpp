@@ -11,6 +11,7 @@
 #include "app/server/api/bodies/body_fields.h"
 #include "core/describe/described_fields.h"
 #include "core/describe/field_json.h"
+#include "core/rig/cloth_kinds.h"
 #include "library/catalogue/metadata.h"
 #include "library/catalogue/session_name.h"
 
@@ -71,7 +72,7 @@ void describe_price(Fields& fields, ScanWish& wish) {
                wish.only_explains);
   fields.value({.name = "like",
                 .says = "What the cloth is taken to be like by explain, to and within",
-                .words = calibration::planned_cloth_names()},
+                .words = {kClothKinds.begin(), kClothKinds.end()}},
                wish.like);
   fields.value({.name = "to_deg",
                 .says = "Choose LEDs, repeat, bracket and films: the cheapest that tell normals to so many "
