@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import {after, before, test} from 'node:test';
 import {Archive} from './support/archive.mjs';
-import {launch, picture, violations, visit} from './support/browser.mjs';
+import {launch, picture, violations, violationsByWidth, visit} from './support/browser.mjs';
 import {until} from './support/rig.mjs';
 
 const scene = (seed) => `
@@ -64,8 +64,7 @@ test('what is chosen is planned with its price, run, compared with what was ther
   assert.equal(await page.getByRole('group', {name: 'Mean error against time'}).count(), 0, 'one level was measured: there is no curve');
   await page.getByText('1 cannot be solved').waitFor();
   assert.match(await rowOf(page, 'Left out', 'torn').innerText(), /JSON|parse|read/i);
-  assert.deepEqual(await violations(page), []);
-  await picture(page, 'batch_plan');
+  assert.deepEqual(await violationsByWidth(page, 'batch-plan'), []);
 
   const before = {linen: await currentOf('linen'), wool: await currentOf('wool')};
   assert.equal(before.wool, archive.solve('wool', 'fast'));
@@ -78,8 +77,7 @@ test('what is chosen is planned with its price, run, compared with what was ther
   assert.equal((await archive.ask('jobs?limit=50')).jobs.filter(({kind}) => kind === 'batch_run').length, 1, 'two clicks are one run');
   await page.locator('figure img').last().scrollIntoViewIfNeeded();
   await page.waitForFunction(() => [...document.querySelectorAll('figure img')].filter((each) => each.naturalWidth > 0).length === 2);
-  assert.deepEqual(await violations(page), []);
-  await picture(page, 'batch_report');
+  assert.deepEqual(await violationsByWidth(page, 'batch-report'), []);
   assert.deepEqual({linen: await currentOf('linen'), wool: await currentOf('wool')}, before, 'nothing is replaced by itself');
 
   await page.getByRole('button', {name: 'Accept...'}).click();

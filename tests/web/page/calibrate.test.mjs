@@ -6,7 +6,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
 import {promisify} from 'node:util';
-import {launch, picture, violations, visit} from './support/browser.mjs';
+import {launch, picture, violations, violationsByWidth, visit} from './support/browser.mjs';
 import {startRig, weft} from './support/rig.mjs';
 
 const run = promisify(execFile);
@@ -290,8 +290,7 @@ test('a rig that was knocked is brought back: seen, fitted, proven, accepted', a
     const {jobs} = await rig.ask('jobs?limit=2');
     assert.ok(jobs.some((job) => job.of === spoiled));
     for (const job of jobs) assert.match(job.wants.calibration, /-updated$/);
-    assert.deepEqual(await violations(page), []);
-    await picture(page, 'calibrate_history');
+    assert.deepEqual(await violationsByWidth(page, 'calibrate'), []);
     await visitor.leave();
   } finally {
     await rig.stop();
@@ -316,8 +315,7 @@ test('which light to add is a table and a drawing, by cloth', async () => {
     assert.match(await row.innerText(), new RegExp(`${polarisers.sigma.normal_deg.toFixed(3)}°.*${polarisers.observable ? 'yes' : 'no'}.*\\+10`, 's'));
     await panel.getByText(result.verdict).waitFor();
     await page.waitForFunction(() => document.querySelector('.light-plan img')?.naturalWidth > 0);
-    assert.deepEqual(await violations(page), []);
-    await picture(page, 'calibrate_light_plan');
+    assert.deepEqual(await violationsByWidth(page, 'calibrate-light-plan'), []);
 
     await panel.getByLabel('Cloth').selectOption('');
     await panel.getByLabel('Roughness').fill('3');

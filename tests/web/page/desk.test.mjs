@@ -2,7 +2,7 @@
 // The desk: frame, focus, scan, look, next; and the room that stays dark.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
+import {luminanceOf, picture, pixelsOf, violations, violationsByWidth, visit} from './support/browser.mjs';
 import {mostToTell_ms, startRig, until} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
@@ -179,8 +179,7 @@ test('after a scan there are ten photographs with their verdict and the relit cl
   const result = page.getByRole('region', {name: 'Last scan'});
   await result.getByText('good').nth(9).waitFor();
   await result.getByRole('img', {name: 'The cloth, relit'}).waitFor({timeout: scanTakes_ms});
-  assert.deepEqual(await violations(page), []);
-  await picture(page, 'desk-scanned');
+  assert.deepEqual(await violationsByWidth(page, 'desk-scanned'), []);
   await showsWhite(result.getByRole('img', {name: 'Photograph: LED 1', exact: true}));
   assert.deepEqual(await outOfStage(page, '.preview', '.frame-card', '.price .button.main'), []);
   await result.getByRole('button', {name: 'Shoot LED 3 again'}).click();

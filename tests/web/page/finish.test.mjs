@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {Archive} from './support/archive.mjs';
-import {launch, picture, violations, visit} from './support/browser.mjs';
+import {launch, picture, violations, violationsByWidth, visit} from './support/browser.mjs';
 import {until} from './support/rig.mjs';
 
 const weave = `
@@ -184,8 +184,7 @@ test('a tile is seen twice a side, with its repeat in millimetres on the cloth t
   await page.locator('.marks text').getByText(`${repeat.across_mm.toFixed(2)} × ${repeat.up_mm.toFixed(2)} mm, ${repeat.angle_deg.toFixed(1)}°`).waitFor();
   assert.equal(await page.locator('.marks svg :is(polygon, path)').count(), 2);
   assert.deepEqual(await page.locator('.side-names span').allInnerTexts(), ['before', 'after']);
-  assert.deepEqual(await violations(page), []);
-  await picture(page, 'finish_tile');
+  assert.deepEqual(await violationsByWidth(page, 'finish'), []);
 
   const divider = page.getByLabel('Before, after');
   await divider.focus();

@@ -6,7 +6,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
 import {promisify} from 'node:util';
-import {picture, violations, visit} from './support/browser.mjs';
+import {picture, violationsByWidth, visit} from './support/browser.mjs';
 import {until, weft} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
@@ -59,8 +59,7 @@ test('the levels are priced as the command prices them, as a table and as points
   assert.equal(await page.getByText('the one to buy').count(), 1);
   assert.equal(await page.locator('.ladder .level').count(), expected.length);
   await page.waitForFunction((count) => [...document.querySelectorAll('.crops img')].filter((crop) => crop.naturalWidth > 0).length === count, expected.length);
-  assert.deepEqual(await violations(page), []);
-  await picture(page, 'jobs_price');
+  assert.deepEqual(await violationsByWidth(page, 'jobs-price'), []);
   await visitor.leave();
 });
 
@@ -99,8 +98,7 @@ test('the queue is the same in another browser: put first, cancelled, done again
   await page.keyboard.press('Escape');
   await page.getByRole('button', {name: `Forget ${second.id}`}).click();
   await page.getByRole('button', {name: `Forget ${second.id}`}).waitFor({state: 'detached'});
-  assert.deepEqual(await violations(theirs), []);
-  await picture(theirs, 'jobs');
+  assert.deepEqual(await violationsByWidth(theirs, 'jobs'), []);
   await Promise.all([ann.leave(), bob.leave()]);
 });
 

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
-import {picture, violations, visit} from './support/browser.mjs';
+import {picture, violations, violationsByWidth, visit} from './support/browser.mjs';
 import {until} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
@@ -81,8 +81,7 @@ test('the library passes axe, also with sessions chosen, at the width of a table
   const page = await enter(visitor);
   await page.locator('.session').first().getByRole('checkbox').check();
   await page.getByText('1 session chosen').waitFor();
-  assert.deepEqual(await violations(page), []);
-  await picture(page, 'sessions_narrow');
+  assert.deepEqual(await violationsByWidth(page, 'sessions'), []);
   await visitor.leave();
 });
 
@@ -236,8 +235,7 @@ test('one session shows its photographs and solves, and no change of somebody el
   await page.getByText('in range').first().waitFor();
   await page.getByText('current').first().waitFor();
   assert.equal(await page.locator('.frames li').count(), 13);
-  assert.deepEqual(await violations(page), []);
-  await picture(page, 'session');
+  assert.deepEqual(await violationsByWidth(page, 'session'), []);
 
   await rig.ask(`sessions/${scanned}/metadata`, {notes: 'for the coat'});
   await page.getByLabel('Notes').fill('for the lining');
@@ -263,8 +261,7 @@ test('one button makes the maps and the export of a scan that has but a preview'
   assert.match(await rowOfChain('export').innerText(), /png16, of (fast|standard|robust|reference), [0-9.]+ degrees on [0-9]+ % of the cloth/);
   await chain.getByText('All of it is fresh.').waitFor();
   await chain.getByText('● good').waitFor();
-  assert.deepEqual(await violations(page), []);
-  await picture(page, 'session_chain');
+  assert.deepEqual(await violationsByWidth(page, 'session-chain'), []);
   await visitor.leave();
 });
 

@@ -9,7 +9,7 @@ const shapes: Record<Verdict, string> = {fine: '●', warning: '▲', fault: '�
 export function Mark({verdict, children}: {verdict: Verdict; children?: ComponentChildren}) {
   return (
     <span class={`mark ${verdict}`}>
-      <span aria-hidden="true">{shapes[verdict]}</span> {children ?? verdict}
+      <span aria-hidden="true">{shapes[verdict]}</span>{'\u00a0'}{children ?? verdict}
     </span>
   );
 }

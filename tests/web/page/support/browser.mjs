@@ -110,6 +110,25 @@ export async function violations(page) {
   return result.violations.flatMap(({id, nodes}) => nodes.map((node) => `${id}: ${node.target.join(' ')}: ${node.failureSummary}`));
 }
 
+/** A telephone, a window at 200 percent, a laptop and a wall. */
+const windows = [[390, 844], [640, 400], [1280, 800], [3840, 2160]];
+
+/** The same in windows of all widths, and which of them show only a part of what is there; `name` is of its pictures. */
+export async function violationsByWidth(page, name) {
+  const before = page.viewportSize();
+  const found = [];
+  for (const [width, height] of windows) {
+    await page.setViewportSize({width, height});
+    const here = await violations(page);
+    const needed = await page.evaluate(() => Math.max(document.documentElement.scrollWidth, document.querySelector('main').scrollWidth));
+    if (needed > width) here.push(`it is ${needed} pixels wide`);
+    found.push(...here.map((each) => `in ${width} pixels: ${each}`));
+    await picture(page, `${name}-${width}`);
+  }
+  await page.setViewportSize(before);
+  return found;
+}
+
 export async function pixelsOf(page) {
   return PNG.sync.read(await page.screenshot());
 }

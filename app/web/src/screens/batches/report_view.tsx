@@ -31,7 +31,7 @@ export function ReportView({name, report, onAccepted}: ReportProps) {
       ))}
       {report.causes.map(({what, sessions, example}) => <p key={what}><Mark verdict="fault">{counted(sessions, 'session')}: {example}</Mark></p>)}
       {report.seconds > 0 && (
-        <p class="numbers">
+        <p>
           {degreesOn(report.mean_deg, report.mean_solved)} of the cloth, {degreesOn(report.predicted_deg, report.predicted_solved)} predicted;
           seconds predicted were {digits(report.seconds_ratio)} times those taken.
         </p>
