@@ -16,6 +16,7 @@
 #include "core/base/job_context.h"
 #include "core/base/temporary_folder.h"
 #include "core/describe/field_json.h"
+#include "material/run/derived_maps.h"
 #include "material/run/maps.h"
 #include "simulator/sample_request.h"
 #include "simulator/scene/scene.h"
@@ -103,6 +104,7 @@ Result<int> sample(const fs::path& session, const CommonArguments& common) {
   if (!solved) return solved.error();
   material::MapsOptions options;
   options.session = session;
+  for (const material::DerivedMap& map : material::derived_maps()) options.maps.emplace_back(map.name);
   const Result<material::MapsReport> maps = material::make_maps(options, context);
   if (!maps) return maps.error();
   const fs::path& folder = maps->folder;
