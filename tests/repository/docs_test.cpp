@@ -190,6 +190,35 @@ TEST(Docs, TheIndexHasEveryPage) {
   }
 }
 
+/// As its file writes it: TEST(Suite, Name), test('name', or a check of a script.
+bool has_test(const TextFile& file, const std::string& name) {
+  const std::size_t dot = name.find('.');
+  if (file.path.ends_with(".cpp") && dot != name.npos) {
+    const std::regex written("TEST(_F|_P)?\\(" + name.substr(0, dot) + ", " + name.substr(dot + 1) + "\\)");
+    return std::regex_search(file.text, written);
+  }
+  return file.text.find((file.path.ends_with(".test.mjs") ? "test('" : "'") + name + '\'') != file.text.npos;
+}
+
+TEST(Docs, EachOfTheTwelveScenariosHasATestThatIsThere) {
+  static const std::regex row(R"(\| (\d+)? ?\| `(tests/[^`]+)` \| ([^|]+) \|.*)");
+  const std::vector<TextFile> files = text_files();
+  std::set<int> scenarios;
+  for (const TextFile& page : files) {
+    if (page.path != "docs/reliability.md") continue;
+    for (const auto& [number, line] : prose_of(page.text)) {
+      std::cmatch cells;
+      if (!std::regex_match(line.begin(), line.end(), cells, row)) continue;
+      if (cells[1].matched) scenarios.insert(std::stoi(cells[1]));
+      const auto file = std::ranges::find(files, cells[2].str(), &TextFile::path);
+      ASSERT_NE(file, files.end()) << place(page.path, number) << ": no " << cells[2];
+      EXPECT_TRUE(has_test(*file, cells[3]))
+          << place(page.path, number) << ": " << cells[2] << " has no '" << cells[3] << "'";
+    }
+  }
+  EXPECT_EQ(scenarios, (std::set<int>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
+}
+
 TEST(Docs, LinksAreReadRelativeToTheirPageAndNotInCode) {
   const std::vector<Link> links =
       links_in({"docs/a.md",

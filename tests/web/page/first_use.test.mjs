@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The first minutes: a server without a rig, and a rig that nobody has calibrated.
+import fs from 'node:fs';
 import {after, before, test} from 'node:test';
 import {Archive} from './support/archive.mjs';
 import {launch, picture, violations, visit} from './support/browser.mjs';
-import {serveArchive, startRig} from './support/rig.mjs';
+import {serveArchive, serveByIcon, startRig} from './support/rig.mjs';
 import assert from 'node:assert/strict';
 
 let browser;
@@ -12,10 +13,11 @@ before(async () => {
 });
 after(() => browser?.close());
 
-test('an empty archive makes a sample cloth by one click, and shows it', async (t) => {
-  const archive = await serveArchive();
+test('from the icon of the desktop to a .glb of a sample cloth in five minutes', async (t) => {
+  const archive = await serveByIcon();
+  t.after(() => archive.stop());
   const visitor = await visit(browser, archive);
-  const page = await visitor.open(archive.address);
+  const page = await visitor.open(archive.opened);
   await page.getByText('This server has no rig').waitFor();
   await page.getByText('No cloth is solved here yet').waitFor();
   assert.deepEqual(await violations(page), []);
@@ -40,8 +42,16 @@ test('an empty archive makes a sample cloth by one click, and shows it', async (
   await page.getByRole('link', {name: 'see it on a ball'}).click();
   await page.waitForURL(/material\/sample\/maps/);
   await page.locator('canvas[data-ready=true]').waitFor();
+  await page.getByRole('tab', {name: 'Export'}).click();
+  await page.getByRole('checkbox', {name: 'glb', exact: true}).check();
+  await page.getByRole('button', {name: 'Export', exact: true}).click();
+  const link = page.locator('.exported[data-preset=glb]').getByRole('link', {name: /\.glb$/});
+  const [file] = await Promise.all([page.waitForEvent('download', {timeout: 120_000}), link.click({timeout: 120_000})]);
+  assert.equal(fs.readFileSync(await file.path()).toString('latin1', 0, 4), 'glTF');
+  const seconds = (Date.now() - began) / 1000;
+  t.diagnostic(`the .glb was there after ${seconds.toFixed(1)} s`);
+  assert.ok(seconds < 300, `${seconds} s`);
   await visitor.leave();
-  await archive.stop();
 });
 
 const weave = `

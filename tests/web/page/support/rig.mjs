@@ -125,11 +125,10 @@ export class Rig {
   }
 }
 
-/** A server without a rig, which shows an empty archive. */
-export async function serveArchive() {
-  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'weft-page-'));
-  const {WEFT_RIG: _, ...environment} = process.env;
-  const daemon = spawn(weft, ['serve', '--port', '0', '--archive', folder], {cwd: folder, env: {...environment, HOME: folder, XDG_STATE_HOME: folder}, stdio: ['ignore', 'pipe', 'pipe']});
+/** A server without a rig, whose home is a folder that goes with it. */
+async function serveWithout(folder, program, words, more = {}) {
+  const {WEFT_RIG: _, XDG_DATA_HOME: __, XDG_CONFIG_HOME: ___, ...environment} = process.env;
+  const daemon = spawn(program, words, {cwd: folder, env: {...environment, HOME: folder, XDG_STATE_HOME: folder, ...more}, stdio: ['ignore', 'pipe', 'pipe']});
   const ended = new Promise((resolve) => daemon.once('exit', resolve));
   const stop = async () => {
     daemon.kill('SIGTERM');
@@ -137,6 +136,27 @@ export async function serveArchive() {
     fs.rmSync(folder, {recursive: true, force: true});
   };
   return {address: await firstLine(daemon), stop};
+}
+
+const newFolder = () => fs.mkdtempSync(path.join(os.tmpdir(), 'weft-page-'));
+
+/** One that shows an empty archive. */
+export function serveArchive() {
+  const folder = newFolder();
+  return serveWithout(folder, weft, ['serve', '--port', '0', '--archive', folder]);
+}
+
+/** What the package installs, begun by its desktop entry; `opened` is what it gives the desktop to open. */
+export async function serveByIcon() {
+  const folder = newFolder();
+  await run('cmake', ['--install', path.dirname(programs), '--prefix', '/usr'], {env: {...process.env, DESTDIR: folder}});
+  const installed = path.join(folder, 'usr/bin');
+  const [, line] = fs.readFileSync(path.join(folder, 'usr/share/applications/weft.desktop'), 'utf8').match(/^Exec=(.*)$/m);
+  const opened = path.join(folder, 'opened');
+  fs.writeFileSync(path.join(installed, 'xdg-open'), `#!/bin/sh\nprintf %s "$1" >'${opened}.new' && mv '${opened}.new' '${opened}'\n`, {mode: 0o755});
+  const served = await serveWithout(folder, 'sh', ['-c', `exec ${line} --port 0`], {PATH: `${installed}:${process.env.PATH}`});
+  await until(() => fs.existsSync(opened));
+  return {...served, opened: fs.readFileSync(opened, 'utf8')};
 }
 
 /** Appends to the rig file. */
