@@ -21,7 +21,8 @@ constexpr Sayable kAlongX = {"x", -1000, 1000, 0}, kAlongY = {"y", -1000, 1000, 
 
 Error not_knocked(const std::string& word, const std::string& why) {
   return {ErrorKind::kUsage, "that cannot be knocked", word, why,
-          "say knock camera x= y= turn= tilt= azimuth=, knock led LED x= y= z=, or knock nothing"};
+          "say knock camera x= y= turn= tilt= azimuth=, knock led LED x= y= z=, knock table x= y= z=, or "
+          "knock nothing"};
 }
 
 Result<void> knock_camera(Knocks& knocks, const std::vector<std::string>& of_it) {
@@ -45,6 +46,13 @@ Result<void> knock_led(Knocks& knocks, const std::vector<std::string>& words, in
       SaidValues::of({words.begin() + 2, words.end()}, {kAlongX, kAlongY, kAlongZ});
   if (!said) return said.error();
   knocks.leds_mm[led] = {(*said)(kAlongX), (*said)(kAlongY), (*said)(kAlongZ)};
+  return {};
+}
+
+Result<void> knock_table(Knocks& knocks, const std::vector<std::string>& of_it) {
+  const Result<SaidValues> said = SaidValues::of(of_it, {kAlongX, kAlongY, kAlongZ});
+  if (!said) return said.error();
+  knocks.table_mm = {(*said)(kAlongX), (*said)(kAlongY), (*said)(kAlongZ)};
   return {};
 }
 
@@ -72,7 +80,8 @@ Result<void> knock(Knocks& knocks, const std::vector<std::string>& words, int le
   }
   if (!words.empty() && words[0] == "camera") return knock_camera(knocks, {words.begin() + 1, words.end()});
   if (!words.empty() && words[0] == "led") return knock_led(knocks, words, leds);
-  return not_knocked(words.empty() ? "knock" : words[0], "it is neither camera nor led");
+  if (!words.empty() && words[0] == "table") return knock_table(knocks, {words.begin() + 1, words.end()});
+  return not_knocked(words.empty() ? "knock" : words[0], "it is neither camera nor led nor table");
 }
 
 Result<simulator::Scene> knocked(simulator::Scene scene, const Knocks& knocks) {
@@ -88,6 +97,9 @@ Result<simulator::Scene> knocked(simulator::Scene scene, const Knocks& knocks) {
     Vec3& position_mm = scene.lights.leds[static_cast<std::size_t>(led - 1)].position_mm;
     position_mm = position_mm + shift_mm;
   }
+  for (simulator::TargetSettings& target : scene.targets)
+    target.centre_mm = target.centre_mm + knocks.table_mm;
+  scene.geometry.cloth_height_mm += knocks.table_mm.z;
   const Result<simulator::SceneRig> is_possible = simulator::rig_of(scene);
   if (!is_possible) return is_possible.error();
   return scene;
@@ -100,6 +112,8 @@ std::vector<CommandWords> knock_words() {
        "azimuth= (of the tilt)",
        "knock camera x=3 turn=0.4"},
       {"knock led LED ...", "the LED is x=, y=, z= (mm) from where it was", "knock led 3 x=6 z=-4"},
+      {"knock table ...", "the table, and what lies on it, is x=, y=, z= (mm) from where it was",
+       "knock table z=-2"},
       {"knock nothing", "everything is where it was", "knock nothing"}};
 }
 

@@ -16,12 +16,14 @@ namespace weft::virtual_rig {
 struct Knocks {
   simulator::PoseSettings camera;  ///< added to the scene's
   std::map<int, Vec3> leds_mm;     ///< shifts by LED, from 1
+  Vec3 table_mm = {};              ///< shift of the table, with tags and patches and the height of the cloth
 
   bool operator==(const Knocks&) const = default;
 };
 
-/// Changes `knocks` as a person says it: "camera x=2 turn=0.3", "led 3 x=5", "nothing". What is said counts
-/// from where the thing was calibrated, not from where it was pushed before. kUsage with what is allowed.
+/// Changes `knocks` as a person says it: "camera x=2 turn=0.3", "led 3 x=5", "table z=-2",
+/// "nothing". What is said counts from where the thing was calibrated, not from where it was pushed before.
+/// kUsage with what is allowed.
 Result<void> knock(Knocks& knocks, const std::vector<std::string>& words, int leds);
 
 /// The scene as it is after them. Errors: as rig_of().

@@ -71,12 +71,14 @@ TEST(RigTable, RefusesWhatItDoesNotKnowWithWhatItDoes) {
   }
 }
 
-TEST(Knock, MovesCameraAndLedsFromWhereTheyWereAtTheStart) {
+TEST(Knock, MovesCameraLedsAndTableFromWhereTheyWereAtTheStart) {
   Knocks knocks;
   ASSERT_TRUE(knock(knocks, {"camera", "x=9"}, 10));
   ASSERT_TRUE(knock(knocks, {"camera", "x=3", "turn=0.4", "tilt=1", "azimuth=90"}, 10));
   ASSERT_TRUE(knock(knocks, {"led", "2", "z=-4"}, 10));
-  const simulator::Scene before = small_scene();
+  ASSERT_TRUE(knock(knocks, {"table", "x=1", "z=-2"}, 10));
+  simulator::Scene before = small_scene();
+  before.targets.emplace_back();
   const Result<simulator::SceneRig> there = rig_of(before);
   ASSERT_TRUE(there) << there.error().message();
   const Result<simulator::Scene> after = knocked(before, knocks);
@@ -88,6 +90,8 @@ TEST(Knock, MovesCameraAndLedsFromWhereTheyWereAtTheStart) {
   ASSERT_EQ(after->lights.leds.size(), there->leds.leds.size());
   EXPECT_EQ(after->lights.leds[0].position_mm.z, there->leds.leds[0].position_mm.z);
   EXPECT_EQ(after->lights.leds[1].position_mm.z, there->leds.leds[1].position_mm.z - 4);
+  EXPECT_EQ(after->geometry.cloth_height_mm, before.geometry.cloth_height_mm - 2);
+  EXPECT_EQ(after->targets.back().centre_mm, (before.targets.back().centre_mm + Vec3{1, 0, -2}));
   ASSERT_TRUE(knock(knocks, {"nothing"}, 10));
   EXPECT_EQ(*knocked(before, knocks), before);
 }
@@ -99,7 +103,7 @@ TEST(Knock, RefusesWhatCannotBe) {
   };
   Knocks knocks;
   for (const Case& c :
-       {Case{{}, "camera"}, Case{{"table"}, "camera"}, Case{{"led"}, "1 to 3"}, Case{{"led", "4"}, "1 to 3"},
+       {Case{{}, "camera"}, Case{{"stone"}, "camera"}, Case{{"led"}, "1 to 3"}, Case{{"led", "4"}, "1 to 3"},
         Case{{"led", "1", "x"}, "x=NUMBER"}, Case{{"camera", "tilt=80"}, "0 to 45"}}) {
     const Result<void> done = knock(knocks, c.words, 3);
     ASSERT_FALSE(done) << testing::PrintToString(c.words);
