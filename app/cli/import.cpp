@@ -90,6 +90,7 @@ void print_import(const library::ImportProposal& plan) {
       print(fmt::format("{}: {} photographs under distant lights of {}{}", name, each.photos.lit.size(),
                         each.source.string(),
                         each.state == library::ImportState::kThere ? ", is there already" : ""));
+      for (const std::string& assumed : each.photos.assumed) print("  " + assumed);
     }
   }
   const std::size_t shown = std::min(plan.left_over.size(), kMostLeftOver);
@@ -154,8 +155,7 @@ Run add_import(Options& options) {
   library::ImportOptions& import = a->import;
   options
       .add("folders", &import.folders,
-           "Folders of raws (NEF, CR2, DNG ...), linear TIFF or EXR frames, RTI files (.lp) or DiLiGenT "
-           "folders")
+           "Folders of raws (NEF, CR2, DNG ...), linear TIFF or EXR frames, or photographs with a light file")
       .required();
   options.add("--rig", &import.rig,
               "Rig file: its calibration, its folder of sessions, its cloth height, where none is named");

@@ -343,14 +343,15 @@ Result<ImportProposal> plan_import(const ImportOptions& options, const JobContex
   plan.archive = place->archive;
   plan.link = options.link;
   if (found->frames.empty() && found->light_files.empty() && found->photo_folders.empty()) {
-    return Error{
-        ErrorKind::kNoInput, "there are no photographs", options.folders.front(),
-        found->left_over.empty() ? "the folder is empty" : "no file in it is a raw, TIFF or EXR frame",
-        "name the folder of the raw files"};
+    return Error{ErrorKind::kNoInput, "there are no photographs", options.folders.front(),
+                 found->left_over.empty() ? "the folder is empty"
+                                          : "no file in it is a raw, TIFF or EXR frame or has lights",
+                 "name the folder of the raw files"};
   }
+  plan.photographs = plan_photographs(*found, plan.archive);
+  drop_used(plan.photographs, *found);
   if (Result<void> ok = plan_sessions(options, *place, *std::move(grouping), *found, context, plan); !ok)
     return std::move(ok).error();
-  plan.photographs = plan_photographs(*found, plan.archive);
   plan.left_over = std::move(found->left_over);
   if (Result<void> ok = check_disks(plan); !ok) return std::move(ok).error();
   return plan;
@@ -378,6 +379,7 @@ Json json_of(const ImportProposal& plan) {
                            {"state", state_of(each.state)},
                            {"source", each.source.string()},
                            {"photographs", each.photos.lit.size()},
+                           {"assumed", each.photos.assumed},
                            {"error", error_of(each.refusal)}});
   }
   for (const LeftOver& file : plan.left_over)

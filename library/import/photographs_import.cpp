@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "core/base/files.h"
 #include "core/base/text.h"
 #include "core/describe/field_json.h"
+#include "core/image_io/image_io.h"
 
 namespace weft::library {
 namespace {
@@ -28,6 +30,13 @@ ProposedPhotographs planned_by(const solve::PhotoOptions& options, const std::st
     planned.state = ImportState::kRefused;
     planned.refusal = std::move(photos).error();
     return planned;
+  }
+  for (const fs::path& file : photos->files()) {
+    if (Result<LoadedImage> decoded = read_image(file); !decoded) {
+      planned.state = ImportState::kRefused;
+      planned.refusal = std::move(decoded).error();
+      return planned;
+    }
   }
   planned.photos = std::move(*photos);
   return planned;
@@ -51,8 +60,11 @@ void look_for_folder(ProposedPhotographs& planned) {
 std::vector<ProposedPhotographs> plan_photographs(const SourceFolders& found, const fs::path& archive) {
   std::vector<ProposedPhotographs> all;
   for (const fs::path& file : found.light_files) {
-    const fs::path folder = file.parent_path();
-    const bool is_alone = std::ranges::count(found.light_files, folder, &fs::path::parent_path) == 1;
+    // RTIBuilder keeps its light files in a folder of that name.
+    const bool is_rtibuilder = file.parent_path().filename() == "assembly-files";
+    const fs::path folder = is_rtibuilder ? file.parent_path().parent_path() : file.parent_path();
+    const bool is_alone =
+        std::ranges::count(found.light_files, file.parent_path(), &fs::path::parent_path) == 1;
     std::string name = folder.filename().string();
     if (!is_alone) name += "_" + file.stem().string();
     solve::PhotoOptions options;
@@ -72,6 +84,27 @@ std::vector<ProposedPhotographs> plan_photographs(const SourceFolders& found, co
     look_for_folder(planned);
   }
   return all;
+}
+
+void drop_used(const std::vector<ProposedPhotographs>& planned, SourceFolders& found) {
+  std::set<fs::path> used;
+  for (const ProposedPhotographs& each : planned) {
+    for (const fs::path& file : each.photos.files()) used.insert(file.lexically_normal());
+    used.insert(each.photos.mask.lexically_normal());
+  }
+  std::erase_if(found.frames, [&](const SourceFile& frame) { return used.contains(frame.file); });
+  std::erase_if(found.left_over, [&](const LeftOver& left) { return used.contains(left.file); });
+  const auto is_of_refused = [&](const fs::path& file) {
+    return std::ranges::any_of(planned, [&](const ProposedPhotographs& each) {
+      std::error_code ignored;
+      const bool is_folder = fs::is_directory(each.source, ignored);
+      const std::string folder = (is_folder ? each.source : each.source.parent_path()).string() + "/";
+      return each.refusal && file.string().starts_with(folder);
+    });
+  };
+  for (const fs::path& file : found.beside_lights)
+    if (!used.contains(file) && !is_of_refused(file))
+      found.left_over.push_back({file, "no light file names it"});
 }
 
 std::vector<std::string> stored_names(const solve::SolvePlan& photos) {

@@ -12,11 +12,15 @@
 
 namespace weft::library {
 
-/// What would become of light files and folders in the layout of the DiLiGenT benchmark: NAME.photos in the
-/// archive, after the folder, of several light files in one also after the file. What cannot be solved as it
-/// is, is refused.
+/// What would become of photographs whose lights are in files (solve/input/light_list.h): NAME.photos in the
+/// archive, after the folder, of several light files in one also after the file. Each photograph is decoded
+/// once. What cannot be solved as it is, is refused.
 std::vector<ProposedPhotographs> plan_photographs(const SourceFolders& found,
                                                   const std::filesystem::path& archive);
+
+/// Takes the files that these photographs use out of frames and what is left over. Pictures beside lights
+/// that nothing uses are left over, unless their lights are refused.
+void drop_used(const std::vector<ProposedPhotographs>& planned, SourceFolders& found);
 
 /// What photographs.json says (weft.photographs/1).
 struct ImportedPhotographs {

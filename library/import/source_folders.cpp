@@ -11,7 +11,7 @@
 #include "core/base/files.h"
 #include "core/base/text.h"
 #include "core/image_io/linear_image.h"
-#include "library/import/name_pattern.h"
+#include "solve/input/light_list.h"
 
 namespace weft::library {
 namespace {
@@ -46,13 +46,16 @@ Result<std::vector<fs::path>> entries_of(const fs::path& folder) {
   return entries;
 }
 
+/// Whether photographs of a folder have their lights in it or in one above, by names or in a table without.
+enum class LightsAbove { kNone, kNamed, kNameless };
+
 /// One folder, and what is found in it and below.
 class Walk {
  public:
   Walk(const fs::path& root, std::set<fs::path>& seen, SourceFolders& found)
       : root_(root), seen_(seen), found_(found) {}
 
-  Result<void> into(const fs::path& folder) {
+  Result<void> into(const fs::path& folder, LightsAbove above) {
     if (!seen_.insert(folder).second) return {};
     const Result<std::vector<fs::path>> entries = entries_of(folder);
     if (!entries) return entries.error();
@@ -65,38 +68,57 @@ class Walk {
       found_.left_over.push_back({folder, "it was imported already"});
       return {};
     }
-    if (fs::exists(folder / "light_directions.txt", ignored) &&
-        fs::exists(folder / "filenames.txt", ignored)) {
-      found_.photo_folders.push_back(folder);
-      return {};
-    }
-    const bool has_light_file =
-        std::ranges::any_of(*entries, [](const fs::path& entry) { return ending_of(entry) == ".lp"; });
+    above = take_lights(folder, *entries, above);
     std::vector<fs::path> below;
     for (const fs::path& entry : *entries) {
       const fs::file_status status = fs::status(entry, ignored);
       if (fs::is_directory(status)) {
         if (!fs::is_symlink(entry, ignored)) below.push_back(entry);
       } else {
-        take(entry, fs::is_regular_file(status), has_light_file);
+        take(entry, fs::is_regular_file(status), above != LightsAbove::kNone);
       }
     }
-    // Photographs of an RTI often lie in a folder beside the light file.
-    if (has_light_file) return {};
     for (const fs::path& entry : below)
-      if (Result<void> ok = into(entry); !ok) return ok;
+      if (Result<void> ok = into(entry, above); !ok) return ok;
     return {};
   }
 
  private:
-  void take(const fs::path& file, bool is_regular, bool is_of_light_file) {
+  // Notes what holds lights; returns what that is to the files here and below.
+  LightsAbove take_lights(const fs::path& folder, const std::vector<fs::path>& entries, LightsAbove above) {
+    const bool has_pictures = std::ranges::any_of(entries, is_linear_image);
+    std::vector<fs::path> files;
+    bool has_table = false, is_nameless = false;
+    for (const fs::path& file : solve::light_files_in(folder)) {
+      if (is_of_program(file)) {
+        files.push_back(file);
+      } else if (const Result<solve::LightList> list = solve::read_light_list(file)) {
+        has_table = true;
+        is_nameless = list->lights.front().name.empty();
+      }
+    }
+    if (has_table && is_nameless && !has_pictures && files.empty()) return LightsAbove::kNameless;
+    if (has_table || (above == LightsAbove::kNameless && has_pictures && files.empty())) {
+      found_.photo_folders.push_back(folder);
+      return LightsAbove::kNamed;
+    }
+    if (files.empty()) return above;
+    found_.light_files.insert(found_.light_files.end(), files.begin(), files.end());
+    return LightsAbove::kNamed;
+  }
+
+  // Lights as a program writes them, which are no table that anybody may mean otherwise.
+  static bool is_of_program(const fs::path& file) {
+    const std::string ending = ending_of(file);
+    return ending == ".lp" || ending == ".dome" || ending == ".relight" || ending == ".json";
+  }
+
+  void take(const fs::path& file, bool is_regular, bool has_lights) {
     const std::string ending = ending_of(file);
     if (!is_regular) {
       found_.left_over.push_back({file, "it is no file"});
-    } else if (ending == ".lp") {
-      found_.light_files.push_back(file);
-    } else if (is_of_light_file) {
-      return;  // the light file names its photographs
+    } else if (has_lights) {
+      if (is_raw_name(file) || is_linear_image(file)) found_.beside_lights.push_back(file);
     } else if (file.filename() == "import.toml" || ending == ".json") {
       found_.descriptions.push_back(file);
     } else if (is_jpeg(file)) {
@@ -126,7 +148,8 @@ Result<SourceFolders> look_into(const std::vector<std::string>& folders) {
   std::set<fs::path> seen;
   for (const std::string& named : folders) {
     const fs::path folder = absolute_folder(named);
-    if (Result<void> ok = Walk(folder, seen, found).into(folder); !ok) return std::move(ok).error();
+    if (Result<void> ok = Walk(folder, seen, found).into(folder, LightsAbove::kNone); !ok)
+      return std::move(ok).error();
   }
   return found;
 }

@@ -24,11 +24,14 @@ struct LeftOver {
 };
 
 struct SourceFolders {
-  std::vector<SourceFile> frames;                    ///< by folder, then as people count
-  std::vector<std::filesystem::path> light_files;    ///< .lp of RTI
-  std::vector<std::filesystem::path> photo_folders;  ///< in the layout of the DiLiGenT benchmark
-  std::vector<std::filesystem::path> descriptions;   ///< import.toml and .json files
-  std::vector<LeftOver> left_over;                   ///< files that are none of these, sessions of weft
+  std::vector<SourceFile> frames;                  ///< by folder, then as people count
+  std::vector<std::filesystem::path> light_files;  ///< .lp, .dome, .relight and JSON with lights
+  /// Photographs whose lights are a table beside them or, without names, in the folder above.
+  std::vector<std::filesystem::path> photo_folders;
+  /// Pictures and raws in and below folders that have lights: of these, or of nothing.
+  std::vector<std::filesystem::path> beside_lights;
+  std::vector<std::filesystem::path> descriptions;  ///< import.toml and .json files
+  std::vector<LeftOver> left_over;                  ///< files that are none of these, sessions of weft
 };
 
 /// Whether this ending (".NEF") is that of a raw file.

@@ -26,9 +26,9 @@ SolvePlan plan_of(const LightList& list, const fs::path& folder) {
     lights.lights.push_back({light.direction(), light.strength_rgb});
     Shot shot;
     shot.led = static_cast<int>(lights.lights.size());
-    const fs::path file = light.photograph.lexically_relative(folder);
-    shot.file =
-        file.empty() || *file.begin() == ".." ? fs::absolute(light.photograph).string() : file.string();
+    const fs::path whole = fs::absolute(light.photograph).lexically_normal(),
+                   file = whole.lexically_relative(fs::absolute(folder).lexically_normal());
+    shot.file = file.empty() || *file.begin() == ".." ? whole.string() : file.string();
     plan.session.shots.push_back(std::move(shot));
   }
   plan.calibration.lights = std::move(lights);

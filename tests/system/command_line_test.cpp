@@ -416,7 +416,6 @@ TEST(Usage, ErrorsEndWith64AndLeaveNothing) {
       {{"simulate", "a.toml"}, {"--output"}},
       {{"solve"}, {"session, --photos or --lp is required"}},
       {{"solve", "a.weft", "--photos", "b"}, {"--photos"}},
-      {{"solve", "--photos", "b", "--lp", "c"}, {"--lp"}},
       {{"solve", "a.weft", "--quality", "perfect"}, {"--quality", "perfect"}},
       {{"solve", "a.weft", "--method", "magic"}, {"--method", "magic"}},
       {{"solve", "a.weft", "--method", "seed", "--quality", "fast"}, {"--method"}},

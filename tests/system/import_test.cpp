@@ -59,6 +59,11 @@ struct Scanned {
   std::map<int, RawFrame> frames;  // by LED; 0 the dark one
 };
 
+std::string without(std::string text, const std::string& part) {
+  for (std::size_t at = 0; (at = text.find(part, at)) != text.npos;) text.erase(at, part.size());
+  return text;
+}
+
 class Import : public testing::Test {
  protected:
   static void SetUpTestSuite() { scanned_ = new Scanned; }
@@ -433,7 +438,8 @@ TEST_F(Import, MakesFoldersOfPhotographsUnderDistantLights) {
   put_bytes(source_ / "coin/coin.lp", lights);
   const Json plan = imported();
   EXPECT_EQ(plan["imported"], 2);
-  EXPECT_EQ(plan["left_over"], Json::array());
+  ASSERT_EQ(plan["left_over"].size(), 2U) << plan["left_over"];
+  EXPECT_THAT(plan["left_over"].dump(), AllOf(HasSubstr("albedo_gt.exr"), HasSubstr("normal_gt.exr")));
   for (const std::string name : {"buddha", "coin"}) {
     SCOPED_TRACE(name);
     const auto solve = [&](const std::string& option, const fs::path& input, const std::string& to) {
@@ -450,6 +456,42 @@ TEST_F(Import, MakesFoldersOfPhotographsUnderDistantLights) {
     EXPECT_LT(difference["max_deg"].get<double>(), 1e-4) << "directions are written to the last digit";
   }
   EXPECT_EQ(imported()["imported"], 0) << "the same once more";
+}
+
+TEST_F(Import, TakesLightFilesOfOtherHandsAndNamesWhatNoneNames) {
+  const PhotographSample sample;
+  sample.write(work_ / "photographs");
+  std::string lines, directions, dome;
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (const char* folder : {"rti/jpeg-exports", "dome", "uw/owl", "rti/assembly-files/again"}) {
+      fs::create_directories(source_ / folder);
+      fs::copy(work_ / "photographs" / sample.name_of(k), source_ / folder / sample.name_of(k));
+    }
+    const Vec3 l = sample.lights[k].direction;
+    lines += fmt::format("..\\jpeg-exports\\{} {} {} {}\n", sample.name_of(k), l.x, l.y, l.z);
+    directions += fmt::format("{} {} {}\n", l.x, l.y, l.z);
+    dome += fmt::format(R"({}{{"x": {}, "y": {}, "z": {}}})", k == 0 ? "" : ",", l.x, l.y, l.z);
+  }
+  put_bytes(source_ / "rti/assembly-files/coin.lp", "6\n" + lines);
+  put_bytes(source_ / "rti/assembly-files/again/below.lp", "6\n" + without(lines, "..\\jpeg-exports\\"));
+  put_bytes(source_ / "dome/led.dome", R"({"directions": [)" + dome + "]}");
+  fs::copy(work_ / "photographs/normal_gt.exr", source_ / "dome/other.exr");
+  put_bytes(source_ / "uw/lights.txt", "6\n" + directions);
+  const Json plan = imported();
+  EXPECT_EQ(plan["imported"], 4) << plan["photographs"];
+  for (const char* name : {"rti", "again", "dome", "owl"})
+    EXPECT_TRUE(fs::exists(archive_ / (std::string(name) + ".photos") / "light_directions.txt")) << name;
+  ASSERT_EQ(plan["left_over"].size(), 1U) << plan["left_over"];
+  EXPECT_THAT(plan["left_over"].dump(), AllOf(HasSubstr("other.exr"), HasSubstr("no light file names it")));
+  EXPECT_THAT(plan["photographs"].dump(), HasSubstr("in the order of their names, 01.exr to 06.exr"));
+}
+
+TEST_F(Import, RefusesAPhotographThatIsCut) {
+  PhotographSample sample;
+  sample.write(source_ / "buddha");
+  const fs::path cut = source_ / "buddha" / sample.name_of(3);
+  fs::resize_file(cut, fs::file_size(cut) / 2);
+  refused({}, {sample.name_of(3)});
 }
 
 TEST_F(Import, AsksBeforeItImports) {

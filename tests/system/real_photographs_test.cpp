@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "core/image_io/image_io.h"
@@ -80,18 +79,15 @@ TEST_F(RealPhotographs, TheBallOfDiLiGenTByLeastSquaresIsWhatWasPublished) {
 TEST_F(RealPhotographs, TheGreySphereIsRound) {
   ASSERT_NO_FATAL_FAILURE(find("uw_photos"));
   if (IsSkipped()) return;
-  std::ifstream lights(data_ / "lights.txt");
-  std::string text, line;
-  ASSERT_TRUE(std::getline(lights, text));
-  text += '\n';
-  for (int k = 0; std::getline(lights, line); ++k) {
-    text += (data_ / "gray" / ("gray." + std::to_string(k) + ".png")).string() + " " + line + "\n";
-  }
-  put_bytes(work_ / "gray.lp", text);
+  // lights.txt lies in the folder above, and names nothing.
   // These photographs are linear in spite of their eight bits: taken as sRGB the sphere is flatter.
-  const Outcome run = run_weft({"solve", "--lp", (work_ / "gray.lp").string(), "-o",
-                                (work_ / "maps").string(), "--transfer", "linear", "--no-previews", "-q"});
+  const Outcome run =
+      run_weft({"solve", "--photos", (data_ / "gray").string(), "-o", (work_ / "maps").string(), "--transfer",
+                "linear", "--no-previews", "--json", "-q"});
   ASSERT_EQ(run.exit_code, 0) << run.error;
+  const Json assumed = Json::parse(bytes_of(work_ / "maps" / "solve.json"))["assumed"];
+  EXPECT_EQ(assumed, Json::array({"lights are those of lights.txt in uw_photos",
+                                  "photographs are in the order of their names, gray.0.png to gray.11.png"}));
 
   const fs::path mask_file = data_ / "gray" / "gray.mask.png";
   const Result<LoadedImage> mask = read_image(mask_file);

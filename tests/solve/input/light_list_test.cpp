@@ -366,6 +366,7 @@ TEST_F(LightFolder, CountsAsPeopleDoWhereNoNamesAreSaid) {
   put("uw/lights.txt", lights);
   const Result<LightList> list = found("", "uw/cat");
   EXPECT_EQ(photographs(list), order);
+  EXPECT_THAT(words_of(list.value()), HasSubstr("lights are those of lights.txt in uw"));
   EXPECT_THAT(words_of(list.value()), HasSubstr("in the order of their names, cat.0.png to cat.11.png"));
   EXPECT_EQ(photographs(found("uw/lights.txt", "uw/cat")), order);
   EXPECT_THAT(photographs(found("uw/lights.txt")), HasSubstr("names no photograph"));
