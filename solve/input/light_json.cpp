@@ -108,7 +108,8 @@ Result<void> take_adjustments(const Json& dome, const fs::path& file, LightList&
   for (std::size_t k = 0; k < factors->size(); ++k) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double factor = (*factors)[k][c];
-      if (!(factor > 0)) return bad_lights(file, fmt::format("ledAdjust[{}] is not above 0", k));
+      if (!(factor > 0) || !std::isfinite(1 / factor))
+        return bad_lights(file, fmt::format("ledAdjust[{}] is not above 0", k));
       list.lights[k].strength_rgb[c] = 1 / factor;
     }
   }

@@ -25,6 +25,9 @@ constexpr std::size_t kMostBytes = std::size_t{32} << 20;
 /// By which a unit length may be off as written with two digits.
 constexpr double kUnit = 0.02;
 
+/// Vectors beyond are no lights in any unit.
+constexpr double kShortest = 1e-9, kLongest = 1e12;
+
 using Matrix = std::vector<std::vector<double>>;
 
 Error no_strength(const fs::path& file, std::size_t light, double strength) {
@@ -184,8 +187,9 @@ Result<LightList> settle_lengths(LightList list) {
   double least = std::numeric_limits<double>::max(), most = 0;
   for (std::size_t k = 0; k < list.lights.size(); ++k) {
     const double long_ = length(list.lights[k].toward);
-    if (!(long_ > 0) || !std::isfinite(long_))
+    if (!(long_ > kShortest))
       return bad_lights(list.file, fmt::format("light {}: a direction has no length", k + 1));
+    if (!(long_ < kLongest)) return bad_lights(list.file, fmt::format("light {} is {} long", k + 1, long_));
     least = std::min(least, long_);
     most = std::max(most, long_);
   }

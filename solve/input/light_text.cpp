@@ -214,7 +214,10 @@ class Table {
     if (lines.empty()) return bad_lights(file_, "there is nothing in it");
     std::size_t first = take_count(lines);
     parted_ = parted_by(lines, first);
-    for (const TextLine& line : lines) words_.push_back({&line, words_of_row(line.text, parted_)});
+    for (const TextLine& line : lines) {
+      std::vector<Word> words = words_of_row(line.text, parted_);
+      if (!words.empty()) words_.push_back({&line, std::move(words)});
+    }
     if (Result<void> ok = take_heading(first); !ok) return std::move(ok).error();
     words_.erase(words_.begin(), words_.begin() + static_cast<std::ptrdiff_t>(first));
     if (words_.empty()) return bad_lights(file_, "there is no line of numbers in it");
