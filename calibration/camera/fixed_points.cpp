@@ -184,7 +184,7 @@ class Texture {
       }
     }
   }
-  /// Of the window at (x0, y0), which is not at the border.
+  /// For the window at (x0, y0), which is not at the border.
   double at(int x0, int y0) const {
     constexpr int kRim = (kSide - kInner) / 2;
     const int left = x0 + kRim, top = y0 + kRim, right = left + kInner, bottom = top + kInner;
