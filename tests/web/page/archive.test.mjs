@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import {after, before, test} from 'node:test';
 import {Archive} from './support/archive.mjs';
-import {launch, picture, violations, violationsByWidth, visit} from './support/browser.mjs';
+import {launch, violations, violationsByWidth, visit} from './support/browser.mjs';
 import {until} from './support/rig.mjs';
 
 const scene = (seed) => `

@@ -2,7 +2,7 @@
 // What is around every screen: coming in, the connection, the tabs.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {luminanceOf, pixelsOf, violationsByWidth, visit} from './support/browser.mjs';
+import {luminanceOf, picture, pixelsOf, violationsByWidth, visit} from './support/browser.mjs';
 import {mostToTell_ms} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 

@@ -6,7 +6,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
 import {promisify} from 'node:util';
-import {picture, violationsByWidth, visit} from './support/browser.mjs';
+import {violationsByWidth, visit} from './support/browser.mjs';
 import {until, weft} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
