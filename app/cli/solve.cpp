@@ -159,6 +159,7 @@ Json json_of(const solve::SolveReport& report) {
           {"status", object_of(facts.status)},
           {"check", facts.check ? object_of(*facts.check) : Json()},
           {"warnings", json_of(facts.warnings)},
+          {"assumed", facts.assumed},
           {"pictures", facts.pictures}};
 }
 
@@ -180,6 +181,7 @@ void print_words(const solve::SolveReport& report) {
   print(report.folder.string());
   print(fmt::format("  {} of {} pixels solved from {} lights; albedo is {}", facts.pixels,
                     facts.size.pixels(), facts.lights, name_of(facts.albedo_scale)));
+  if (!facts.assumed.empty()) print(fmt::format("  assumed: {}", fmt::join(facts.assumed, "; ")));
   if (facts.taken) print_price(*facts.taken, facts.foretold);
   print("  pixels by status:" + status_words(facts.status));
   if (facts.reflectance && !facts.reflectance->lobe.family.empty())
@@ -260,8 +262,6 @@ Result<int> solve(solve::SolveRequest& arguments, const CommonArguments& common)
                       : solve::solve_photos(arguments.photos, options, context);
   }();
   if (!report) return std::move(report).error();
-  if (!report->facts.assumed.empty() && !common.quiet)
-    note(fmt::format("assumed: {}", fmt::join(report->facts.assumed, "; ")));
   if (common.json) {
     print_json(json_of(*report));
   } else {

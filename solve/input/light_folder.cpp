@@ -43,7 +43,7 @@ bool agree(const LightList& a, const LightList& b) {
   });
 }
 
-// Of several the one that has the others' lights and names; those that cannot be read are none.
+// The one that has the others' lights, and names if one has them; those that cannot be read are none.
 Result<fs::path> choose_light_file(const fs::path& folder, const std::vector<fs::path>& files) {
   std::vector<LightList> lists;
   for (const fs::path& file : files)

@@ -321,10 +321,10 @@ Result<LightList> find_lights(const fs::path& file, const PhotographPlace& place
   }
   Result<LightList> list = read_light_list(named);
   if (!list) return list;
-  if (const fs::path folder = absolute_folder(named.parent_path());
-      file.empty() && folder != absolute_folder(place.folder))
-    list->assumed.push_back(
-        fmt::format("lights are those of {} in {}", named.filename().string(), folder.filename().string()));
+  if (file.empty() && absolute_folder(named.parent_path()) != absolute_folder(place.folder)) {
+    list->assumed.push_back(fmt::format("lights are those of {} in {}", named.filename().string(),
+                                        absolute_folder(named.parent_path()).filename().string()));
+  }
   if (Result<void> ok = find_photographs(place, *list); !ok) return std::move(ok).error();
   return list;
 }

@@ -21,13 +21,14 @@ SolvePlan plan_of(const LightList& list, const fs::path& folder) {
   SolvePlan plan;
   plan.is_of_rig = plan.raw = false;
   plan.session.folder = folder;
+  const fs::path base = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
   DistantLights lights;
   for (const ListedLight& light : list.lights) {
     lights.lights.push_back({light.direction(), light.strength_rgb});
     Shot shot;
     shot.led = static_cast<int>(lights.lights.size());
     const fs::path whole = fs::absolute(light.photograph).lexically_normal(),
-                   file = whole.lexically_relative(fs::absolute(folder).lexically_normal());
+                   file = whole.lexically_relative(base);
     shot.file = file.empty() || *file.begin() == ".." ? whole.string() : file.string();
     plan.session.shots.push_back(std::move(shot));
   }

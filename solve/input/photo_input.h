@@ -19,7 +19,7 @@ inline constexpr std::array<const char*, 2> kPictureOrientationNames = {"shown",
 
 /// Where photographs under distant lights and their lights are: `folder`, `light_file` or both are named.
 struct PhotoOptions {
-  /// Of photographs and of a mask (solve/input/photo_mask.h). Without `light_file` its lights are in it or
+  /// Has photographs and perhaps a mask (solve/input/photo_mask.h). Without `light_file` its lights are in it or
   /// above (solve/input/light_list.h).
   std::filesystem::path folder;
   /// What holds the lights; without `folder` also where photographs are, beside it or as it says.

@@ -27,6 +27,10 @@ constexpr std::size_t kMostFolders = 100;
 constexpr std::array<const char*, 5> kNeighbours = {"jpeg-exports", "original-captures", "images", "photos",
                                                     "photographs"};
 
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
 /// The names of a folder, read once.
 class Folders {
  public:
@@ -109,7 +113,7 @@ class NameSearch {
 
   Result<void> run() {
     if (Result<void> ok = check_names(); !ok) return ok;
-    const fs::path own = list_.file.parent_path();
+    const fs::path own = folder_of(list_.file);
     const fs::path first = place_.folder.empty() ? own : place_.folder;
     if (place_.folder.empty() || own.lexically_normal() == first.lexically_normal() ||
         (own / "").lexically_normal() == (first / "").lexically_normal()) {
@@ -240,7 +244,7 @@ class NameSearch {
     if (best_.parts > 0 && best_.parts < most_parts_) {
       list_.assumed.push_back(fmt::format(
           "names are of another folder: the photographs of these names in {} are taken", place_words()));
-    } else if (best_.parts > 0 && place_.folder.empty() && best_.folder != list_.file.parent_path()) {
+    } else if (best_.parts > 0 && place_.folder.empty() && best_.folder != folder_of(list_.file)) {
       list_.assumed.push_back("photographs are in " + place_words());
     }
     if (fits[1] > 0) list_.assumed.push_back(fmt::format("{} names have other capitals", fits[1]));
@@ -255,7 +259,7 @@ class NameSearch {
 
   std::string place_words() const {
     const std::string folder = best_.folder.filename().string();
-    if (best_.folder == list_.file.parent_path()) return "the folder of the light file";
+    if (best_.folder == folder_of(list_.file)) return "the folder of the light file";
     return folder.empty() ? best_.folder.string() : folder;
   }
 
@@ -315,7 +319,7 @@ Result<std::vector<fs::path>> photographs_of(const fs::path& folder, std::size_t
 
 Result<void> find_photographs(const PhotographPlace& place, LightList& list) {
   if (!list.lights.front().name.empty()) return NameSearch(place, list).run();
-  const fs::path folder = place.folder.empty() ? list.file.parent_path() : place.folder;
+  const fs::path folder = place.folder.empty() ? folder_of(list.file) : place.folder;
   const Result<std::vector<fs::path>> files = photographs_of(folder, list.lights.size(), list.file);
   if (!files) return files.error();
   for (std::size_t k = 0; k < files->size(); ++k) list.lights[k].photograph = (*files)[k];

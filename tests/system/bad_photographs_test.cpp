@@ -275,10 +275,10 @@ TEST_F(BadPhotographs, ALightFileWithAnotherCountOrNoneIsReadAndTold) {
     put_bytes(folder_ / "lights.lp", count + lines);
     const fs::path maps = work_ / said;
     const Outcome run =
-        run_weft({"solve", "--lp", (folder_ / "lights.lp").string(), "-o", maps.string(), "--no-previews"});
+        run_weft({"solve", "--lp", "lights.lp", "-o", maps.string(), "--no-previews"}, {.folder = folder_});
     ASSERT_EQ(run.exit_code, 0) << run.error;
-    EXPECT_NE(run.error.find(said), std::string::npos) << run.error;
-    EXPECT_NE(run.error.find("names are of another folder"), std::string::npos) << run.error;
+    EXPECT_NE(run.output.find(said), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("names are of another folder"), std::string::npos) << run.output;
     const Json assumed = Json::parse(bytes_of(maps / "solve.json"))["assumed"];
     ASSERT_EQ(assumed.size(), 2U) << assumed;
     EXPECT_EQ(assumed[0], said);
