@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/image/image.h"
 
+#include <fcntl.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
+#include <cstdlib>
 #include <new>
+#include <string>
 
 namespace weft::detail {
 namespace {
@@ -18,6 +22,18 @@ void* allocate_pixels(std::size_t bytes) {
   if (data == MAP_FAILED) throw std::bad_alloc();
   if (bytes >= 4 * kHugePage) madvise(data, bytes, MADV_HUGEPAGE);
   return data;
+}
+
+void* allocate_pixels_on_disk(std::size_t bytes, const char* folder) {
+  std::string name = std::string(folder) + "/weft-pixels-XXXXXX";
+  const int file = mkostemp(name.data(), O_CLOEXEC);
+  if (file < 0) return nullptr;
+  unlink(name.c_str());
+  // Room is taken now: a page without room ends the program later.
+  const bool has_room = posix_fallocate(file, 0, static_cast<off_t>(bytes)) == 0;
+  void* data = has_room ? mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0) : MAP_FAILED;
+  close(file);
+  return data == MAP_FAILED ? nullptr : data;
 }
 
 void release_pixels(void* data, std::size_t bytes) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -56,6 +57,8 @@ class View {
 
 namespace detail {
 void* allocate_pixels(std::size_t bytes);
+/// The same in a file of `folder` that has no name; null where the disk has no room for it.
+void* allocate_pixels_on_disk(std::size_t bytes, const char* folder);
 void release_pixels(void* data, std::size_t bytes);
 /// Samples from one row to the next: `width` rounded up to a whole row group, plus one.
 std::ptrdiff_t padded_stride(int width);
@@ -72,13 +75,19 @@ class Image {
 
  public:
   Image() = default;
-  explicit Image(Size size, int planes = 1)
-      : size_(size),
-        planes_(planes),
-        stride_(detail::padded_stride(size.width)),
-        plane_(detail::padded_plane(stride_, size.height, sizeof(T))),
-        bytes_(static_cast<std::size_t>(plane_) * static_cast<std::size_t>(planes) * sizeof(T)),
-        data_(static_cast<T*>(detail::allocate_pixels(bytes_))) {}
+  explicit Image(Size size, int planes = 1) {
+    lay_out(size, planes);
+    data_ = static_cast<T*>(detail::allocate_pixels(bytes_));
+  }
+  /// The same on the disk of `folder`, from where pages come and go as they are used; nothing where that has
+  /// no room.
+  static std::optional<Image> on_disk(Size size, int planes, const char* folder) {
+    Image image;
+    image.lay_out(size, planes);
+    image.data_ = static_cast<T*>(detail::allocate_pixels_on_disk(image.bytes_, folder));
+    if (image.data_ == nullptr) return std::nullopt;
+    return image;
+  }
   Image(Image&& other) noexcept { swap(other); }
   Image& operator=(Image&& other) noexcept {
     Image moved(std::move(other));
@@ -101,6 +110,13 @@ class Image {
   bool empty() const { return data_ == nullptr; }
 
  private:
+  void lay_out(Size size, int planes) {
+    size_ = size;
+    planes_ = planes;
+    stride_ = detail::padded_stride(size.width);
+    plane_ = detail::padded_plane(stride_, size.height, sizeof(T));
+    bytes_ = static_cast<std::size_t>(plane_) * static_cast<std::size_t>(planes) * sizeof(T);
+  }
   void swap(Image& other) noexcept {
     std::swap(size_, other.size_);
     std::swap(planes_, other.planes_);

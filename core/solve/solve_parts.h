@@ -30,6 +30,7 @@ struct DistantPhotograph {
   std::string file, sha256;
   Vec3 direction;  ///< to the light
   std::array<double, 3> irradiance_rgb = {};
+  std::optional<double> distance_mm = {};  ///< of a near light, from the middle of the picture
 
   friend bool operator==(const DistantPhotograph&, const DistantPhotograph&) = default;
 };
@@ -47,6 +48,7 @@ struct SolveInput {
   std::optional<int> orientation = {};     ///< that they were turned by; none: as they are stored
   std::string dark = {};                   ///< SHA-256 of the one with all lamps off
   std::optional<double> ambient = {};      ///< light that was taken from all, a share of full scale
+  std::optional<double> mm_per_pixel = {}, fov_deg = {};  ///< of the cloth, of the picture's width
   Json second_pose = {};                 ///< a SolveInput; null: there was none
 
   friend bool operator==(const SolveInput&, const SolveInput&) = default;

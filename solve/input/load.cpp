@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -145,18 +146,48 @@ void hide_outside(const Image<std::uint8_t>& mask, Image<float>& rgb) {
   }
 }
 
+// Photographs beyond this lie on disk: a hundred lights are as many frames as ten scans have.
+constexpr std::uint64_t kMostInMemory = std::uint64_t{1} << 30;
+
+bool lie_on_disk(const SolvePlan& plan) {
+  return !plan.raw && 12 * static_cast<std::uint64_t>(plan.size.pixels()) * plan.frames().size() > kMostInMemory;
+}
+
+// The folder for large files that may be lost; /tmp is often memory.
+std::string scratch_folder() {
+  const char* said = std::getenv("TMPDIR");  // NOLINT(concurrency-mt-unsafe)
+  return said != nullptr && *said != 0 ? said : "/var/tmp";
+}
+
+Result<Image<float>> moved_to_disk(const Image<float>& image) {
+  const std::string folder = scratch_folder();
+  std::optional<Image<float>> kept = Image<float>::on_disk(image.size(), image.planes(), folder.c_str());
+  if (!kept) {
+    return Error{ErrorKind::kCannotCreate, "there is no room for the photographs", folder,
+                 "beyond 1 GB they are kept on disk, 12 bytes a pixel",
+                 "free some room there, or name another folder in TMPDIR"};
+  }
+  for (int p = 0; p < image.planes(); ++p) {
+    for (int y = 0; y < image.height(); ++y)
+      std::copy_n(image.plane(p).row(y), image.width(), kept->plane(p).row(y));
+  }
+  return std::move(*kept);
+}
+
 // Readings of photographs that somebody developed: of a session over the light that its exposure gathers.
 Result<void> read_developed(const SolvePlan& plan, const JobContext& context, Photographs& photographs,
                             FramesBeside& beside) {
   const Result<std::optional<Image<std::uint8_t>>> mask = mask_of(plan);
   if (!mask) return mask.error();
+  const bool on_disk = lie_on_disk(plan);
   const auto read_one = [&](const Shot& shot) -> Result<Image<float>> {
-    if (plan.is_of_rig) return capture::read_developed_shot(plan.session, shot);
-    Result<Image<float>> image = read_linear_image(plan.session.path_of(shot), plan.transfer, plan.clipped);
+    Result<Image<float>> image =
+        plan.is_of_rig ? capture::read_developed_shot(plan.session, shot)
+                       : read_linear_image(plan.session.path_of(shot), plan.transfer, plan.clipped);
     if (!image) return image;
     *image = as_shown(std::move(*image), plan.orientation);
     if (*mask) hide_outside(**mask, *image);
-    return image;
+    return on_disk ? moved_to_disk(*image) : std::move(image);
   };
   Result<std::vector<Image<float>>> frames = read_frames<Image<float>>(plan.frames(), context, read_one);
   if (!frames) return std::move(frames).error();
@@ -263,7 +294,10 @@ Result<GlossSamples> sample_pose(const SolvePlan& plan, const JobContext& contex
 std::uint64_t memory_needed(const SolvePlan& plan, int threads) {
   const auto pixels = static_cast<std::uint64_t>(plan.size.pixels());
   const std::size_t frames = plan.frames().size();
-  if (!plan.is_of_rig) return pixels * 12 * (frames + 4);
+  if (!plan.is_of_rig) {
+    const std::size_t held = lie_on_disk(plan) ? static_cast<std::size_t>(threads) : frames;
+    return pixels * 12 * (held + 4);
+  }
   const std::size_t decoding = std::min(static_cast<std::size_t>(threads), frames);
   const std::uint64_t bytes_a_pixel = plan.raw ? 2 : 12;
   const std::uint64_t of_level =

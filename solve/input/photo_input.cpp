@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
 #include <utility>
 #include <variant>
 
@@ -37,11 +39,9 @@ SolvePlan plan_of(const LightList& list, const fs::path& folder) {
   return plan;
 }
 
-Result<SolvePlan> read_photos(const PhotoOptions& options) {
-  const Result<LightList> list = find_lights(options.light_file, {options.folder, options.skips_missing});
-  if (!list) return list.error();
+Result<SolvePlan> read_photos(const PhotoOptions& options, const LightList& list) {
   const bool has_folder = !options.folder.empty();
-  SolvePlan plan = plan_of(*list, has_folder ? options.folder : list->file.parent_path());
+  SolvePlan plan = plan_of(list, has_folder ? options.folder : list.file.parent_path());
   if (!has_folder) return plan;
   Result<fs::path> mask = find_mask(options.folder);
   if (!mask) return std::move(mask).error();
@@ -60,6 +60,37 @@ Result<void> choose_photos(const std::vector<int>& numbers, SolvePlan& plan) {
     return std::move(lights).error();
   for (const int number : numbers) plan.lit.push_back(all[static_cast<std::size_t>(number) - 1]);
   return {};
+}
+
+// Lamps at their places over the middle of the picture, which shine alike to all sides. A white surface there
+// that faces one reads what its strength says, as under a light far away.
+void stand_near(const PhotoOptions& options, const LightList& list, SolvePlan& plan) {
+  constexpr double kFarAway_mm = 1e5;
+  constexpr double kDegree = std::numbers::pi / 180;
+  NearLights near;
+  const DistantLights& distant = std::get<DistantLights>(*plan.calibration.lights);
+  for (std::size_t k = 0; k < distant.lights.size(); ++k) {
+    const double distance_mm = length(list.lights[k].toward);
+    NearLight& led = near.leds.emplace_back();
+    led.position_mm = distance_mm * distant.lights[k].direction;
+    led.aim = -1.0 * distant.lights[k].direction;
+    led.mu = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      led.flux_rgb[c] = distant.lights[k].irradiance_rgb[c] * distance_mm * distance_mm;
+  }
+  const double width_mm = plan.size.width * options.mm_per_pixel;
+  const double distance_mm =
+      options.fov_deg > 0 ? width_mm / (2 * std::tan(options.fov_deg * kDegree / 2)) : kFarAway_mm;
+  plan.calibration.camera = overhead_camera(plan.size, distance_mm, options.mm_per_pixel);
+  plan.calibration.lights = std::move(near);
+  plan.input.mm_per_pixel = options.mm_per_pixel;
+  if (options.fov_deg > 0) plan.input.fov_deg = options.fov_deg;
+  for (std::size_t k = 0; k < plan.lit.size(); ++k)
+    plan.input.photographs[k].distance_mm =
+        length(list.lights[static_cast<std::size_t>(plan.lit[k].led) - 1].toward);
+  plan.assumed.push_back(fmt::format("near lights, in mm over the middle of the picture, of {:g} mm a pixel{}",
+                                     options.mm_per_pixel,
+                                     options.fov_deg > 0 ? "" : ", seen from far away"));
 }
 
 // What a person calls them by: the name of their folder or light file.
@@ -81,7 +112,9 @@ Result<void> look_at_mask(SolvePlan& plan) {
 }  // namespace
 
 Result<SolvePlan> plan_photos(const PhotoOptions& options) {
-  Result<SolvePlan> plan = read_photos(options);
+  const Result<LightList> list = find_lights(options.light_file, {options.folder, options.skips_missing});
+  if (!list) return list.error();
+  Result<SolvePlan> plan = read_photos(options, *list);
   if (!plan) return plan;
   plan->clipped = options.clipped;
   plan->ambient = options.ambient;
@@ -98,6 +131,7 @@ Result<SolvePlan> plan_photos(const PhotoOptions& options) {
   }
   if (Result<void> looked = look_at_pictures(options, *plan); !looked) return std::move(looked).error();
   if (Result<void> looked = look_at_mask(*plan); !looked) return std::move(looked).error();
+  if (list->are_positions && options.mm_per_pixel > 0) stand_near(options, *list, *plan);
   const std::string name = name_of_source(options).string();
   plan->where = plan->session.fabric = name;
   std::error_code ignored;

@@ -30,6 +30,8 @@ struct PhotoOptions {
   LightFlip flip = LightFlip::kNone;
   std::filesystem::path dark;  ///< the same with all lamps off; empty: none
   double ambient = 0;          ///< light that is in all of them, a share of full scale
+  double mm_per_pixel = 0;     ///< of the cloth; 0: not known. With it positions of lights are near lights, in mm
+  double fov_deg = 0;          ///< of the picture's width; 0: seen from far away
   Clipped clipped = Clipped::kMark;
   std::vector<int> lights;  ///< numbers from 1; empty: all
 };

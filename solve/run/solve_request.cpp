@@ -184,6 +184,17 @@ void describe(Fields& fields, SolveRequest& r) {
                 .says = "The same photograph with all lamps off, which is taken from the others",
                 .said = Said::kAtThisMachine},
                r.photos.dark);
+  fields.value({.name = "mm_per_pixel",
+                .says = "Of the cloth, mm; positions of lights are then near lights, in mm over its middle",
+                .range = kAboveZero,
+                .said = Said::kAtThisMachine},
+               r.photos.mm_per_pixel);
+  fields.value({.name = "fov_deg",
+                .says = "Of the picture's width, degrees; without it, it is seen from far away",
+                .range = {0.1, 170},
+                .option = "--fov",
+                .said = Said::kAtThisMachine},
+               r.photos.fov_deg);
   fields.value({.name = "ambient",
                 .says = "Light that is in all photographs, a share of full scale",
                 .range = kNotNegative,

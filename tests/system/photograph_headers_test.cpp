@@ -111,7 +111,7 @@ TEST_F(PhotographHeaders, StoredBottomUpTheyAreSolvedAsTheyAreShown) {
   const Outcome run = solve();
   ASSERT_EQ(run.exit_code, 0) << run.error;
   EXPECT_LT(degrees(), 0.01);
-  EXPECT_NE(run.error.find("orientation 4: mirrored top to bottom"), std::string::npos) << run.error;
+  EXPECT_NE(run.output.find("orientation 4: mirrored top to bottom"), std::string::npos) << run.output;
 }
 
 TEST_F(PhotographHeaders, OfOneThatIsToBeShownTurnedThePersonDecides) {
@@ -137,7 +137,7 @@ TEST_F(PhotographHeaders, ExposuresThatDifferAreDividedOut) {
   const Outcome run = solve();
   ASSERT_EQ(run.exit_code, 0) << run.error;
   EXPECT_LT(degrees(), 0.02);
-  EXPECT_NE(run.error.find("each photograph is divided by its own"), std::string::npos) << run.error;
+  EXPECT_NE(run.output.find("each photograph is divided by its own"), std::string::npos) << run.output;
 }
 
 TEST_F(PhotographHeaders, OneFileUnderTwoLightsIsRefused) {
