@@ -19,8 +19,8 @@ inline constexpr std::array<const char*, 2> kPictureOrientationNames = {"shown",
 
 /// Where photographs under distant lights and their lights are: `folder`, `light_file` or both are named.
 struct PhotoOptions {
-  /// Has photographs and perhaps a mask (solve/input/photo_mask.h). Without `light_file` its lights are in it or
-  /// above (solve/input/light_list.h).
+  /// Has photographs and perhaps a mask (solve/input/photo_mask.h). Without `light_file` its lights are in it
+  /// or above (solve/input/light_list.h).
   std::filesystem::path folder;
   /// What holds the lights; without `folder` also where photographs are, beside it or as it says.
   std::filesystem::path light_file;
