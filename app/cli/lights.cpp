@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solve/run/lights_report.h"
+#include "solve/run/look_at_lights.h"
 
 #include <fmt/format.h>
 
