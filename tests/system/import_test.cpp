@@ -491,7 +491,10 @@ TEST_F(Import, RefusesAPhotographThatIsCut) {
   sample.write(source_ / "buddha");
   const fs::path cut = source_ / "buddha" / sample.name_of(3);
   fs::resize_file(cut, fs::file_size(cut) / 2);
-  refused({}, {sample.name_of(3)});
+  const Outcome run = import();
+  EXPECT_EQ(run.exit_code, 65) << run.error;
+  EXPECT_THAT(run.json()["photographs"][0]["error"].dump(), HasSubstr(sample.name_of(3)));
+  EXPECT_FALSE(fs::exists(archive_ / "buddha.photos"));
 }
 
 TEST_F(Import, AsksBeforeItImports) {
