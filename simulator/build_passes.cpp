@@ -65,6 +65,7 @@ class Builder {
     if (on().relief) add(relief_pass(), "relief");
     if (output_ == Output::kSurface && !scene_.targets.empty())
       add(targets_pass(scene_, rig_, seen_by_camera));
+    if (output_ == Output::kSurface && !scene_.balls.empty()) add(balls_pass(scene_, rig_));
   }
 
   void add_rays() {
@@ -72,6 +73,7 @@ class Builder {
       add(mesh_pass(), on().cast_shadows ? "cast_shadows" : "interreflection");
     if (on().interreflection) add(bounces_pass(scene_, halos_), "interreflection");
     if (!scene_.targets.empty()) add(targets_pass(scene_, rig_, true));
+    if (!scene_.balls.empty()) add(balls_pass(scene_, rig_));
     if (output_ == Output::kCounts && has_photosites())
       add(photosites_pass(scene_, halos_), photosites_effect());
   }
@@ -84,6 +86,7 @@ class Builder {
     }
     if (has_own_law(scene_)) add(paper_pass(scene_));
     if (on().cast_shadows) add(cast_shadows_pass(scene_, rig_, halos_), "cast_shadows");
+    if (!scene_.balls.empty()) add(mirrored_lamps_pass(scene_, rig_));
   }
 
   void add_reflection() {

@@ -23,12 +23,14 @@ Pass relief_pass();
 Pass mesh_pass();
 Pass bounces_pass(const Scene& scene, const Halos& halos);
 Pass targets_pass(const Scene& scene, const SceneRig& rig, bool seen_by_camera);
+Pass balls_pass(const Scene& scene, const SceneRig& rig);  ///< numbered after the targets
 
 // Light of the shot's LED: fills `light` and `irradiance`.
 Pass distant_light_pass(const Scene& scene, const SceneRig& rig);  ///< plain
 Pass near_light_pass(const SceneRig& rig);
 Pass finite_led_pass(const Scene& scene, const SceneRig& rig);
 Pass paper_pass(const Scene& scene);
+Pass mirrored_lamps_pass(const Scene& scene, const SceneRig& rig);  ///< highlights of balls
 Pass cast_shadows_pass(const Scene& scene, const SceneRig& rig, const Halos& halos);
 
 // From irradiance to signal.

@@ -73,6 +73,7 @@ Pass targets_pass(const Scene& scene, const SceneRig& rig, bool seen_by_camera) 
 Pass paper_pass(const Scene& scene) {
   std::vector<double> non_lambertian;
   for (const TargetSettings& target : scene.targets) non_lambertian.push_back(target.sheet.non_lambertian);
+  non_lambertian.resize(scene.targets.size() + scene.balls.size());
   return {"paper", "lets paper depart from Lambert's law", PassStage::kLight,
           [non_lambertian = std::move(non_lambertian)](PassTile& tile) {
             for (std::size_t i = 0; i < tile.irradiance.size(); ++i) {
@@ -81,6 +82,40 @@ Pass paper_pass(const Scene& scene) {
               tile.irradiance[i] *=
                   lambert_factor(non_lambertian[static_cast<std::size_t>(tile.target[i])], cosine);
             }
+          }};
+}
+
+Pass balls_pass(const Scene& scene, const SceneRig& rig) {
+  return {"balls", "lays balls on the table", PassStage::kSurface,
+          [balls = scene.balls, first = static_cast<int>(scene.targets.size()),
+           lens = *Lens::of(rig.camera)](PassTile& tile) {
+            if (first == 0) tile.target.assign(tile.surface.size(), kCloth);
+            for_each_pixel(tile.area, [&](std::size_t i, int x, int y) {
+              for (std::size_t b = 0; b < balls.size(); ++b) {
+                const std::optional<BallHit> there = hit(balls[b], ray_of(lens, x, y));
+                if (!there) continue;
+                for (double& albedo : tile.albedo[i]) albedo += there->coverage * (balls[b].albedo - albedo);
+                if (there->coverage < 0.5) continue;
+                tile.target[i] = first + static_cast<int>(b);
+                tile.point_mm[i] = there->point_mm;
+                tile.surface[i] = {};
+                tile.surface[i].normal = there->normal;
+              }
+            });
+          }};
+}
+
+Pass mirrored_lamps_pass(const Scene& scene, const SceneRig& rig) {
+  return {"mirrored lamps", "lets balls mirror the LED", PassStage::kLight,
+          [balls = scene.balls, first = static_cast<int>(scene.targets.size()),
+           lens = *Lens::of(rig.camera)](PassTile& tile) {
+            if (tile.led == 0) return;
+            for_each_pixel(tile.area, [&](std::size_t i, int x, int y) {
+              if (tile.target[i] < first) return;
+              const BallSettings& ball = balls[static_cast<std::size_t>(tile.target[i] - first)];
+              tile.irradiance[i] += tile.light[i].strength *
+                                    mirrored(ball, ray_of(lens, x, y), tile.light[i].direction) / ball.albedo;
+            });
           }};
 }
 

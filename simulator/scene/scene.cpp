@@ -60,6 +60,8 @@ constexpr SceneRule kRules[] = {
     {"target", [](const Scene& s) { return has_chart(s) && s.spectra.chart.empty(); },
      "the patches of a chart are spectra, and there are none",
      "give spectra.chart a folder or a list of 24 spectra"},
+    {"ball", [](const Scene& s) { return s.auto_to_sigma && !s.balls.empty(); },
+     "the bounds of automatic effects do not know balls", "name the effects, or leave the ball out"},
     {"effects.finite_led", [](const Scene& s) { return s.effects.finite_led && !s.effects.near_light; },
      "without near_light every LED is infinitely far away and has no size", kNearLight},
     {"effects.relief", [](const Scene& s) { return s.effects.relief && !s.effects.near_light; },

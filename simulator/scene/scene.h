@@ -20,6 +20,7 @@
 #include "simulator/reflectance/reflectance.h"
 #include "simulator/scene/scene.h"
 #include "simulator/spectra/spectrum.h"
+#include "simulator/targets/table_ball.h"
 #include "simulator/targets/target_settings.h"
 
 // A scene says what is on the table, what lights it, what photographs it and which effects are simulated.
@@ -227,6 +228,7 @@ struct Scene {
   FrameFormat frames = FrameFormat::kDng;
   std::vector<DamageSettings> damage;   ///< in this order
   std::vector<TargetSettings> targets;  ///< on the table beside or over the cloth
+  std::vector<BallSettings> balls;      ///< over both
   EffectSettings effects;
   /// `effects = "auto"`: the effects that run are those whose bound exceeds this many sigma of the photon
   /// noise (simulator/effects/bounds.h); `effects` above is not used.

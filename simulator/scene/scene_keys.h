@@ -108,6 +108,10 @@ void walk(Visitor& v, Scene& s) {
          "What lies beside the cloth or above it, in closed form: edges have their exact coverage in every "
          "pixel",
          s.targets);
+  v.list("ball",
+         "A ball over cloth and targets, which tells where lamps are. It throws no shadow and mirrors lamps "
+         "alone",
+         s.balls);
   v.list("damage",
          "A fault that no rig should have, in the shots of some LEDs, after everything else and in the order "
          "of the file",

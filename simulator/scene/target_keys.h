@@ -99,4 +99,16 @@ void walk(Visitor& v, TargetSettings& t) {
   v.section("sheet", "What a target is printed on", t.sheet);
 }
 
+template <typename Visitor>
+void walk(Visitor& v, BallSettings& b) {
+  v.choice(
+      {"surface", "", "`chrome` and `glossy` (black glass) mirror a lamp, `matt` shades"}, b.surface,
+      {{"matt", BallSurface::kMatt}, {"glossy", BallSurface::kGlossy}, {"chrome", BallSurface::kChrome}});
+  v.vec3({"centre_mm", "mm", "Of the ball"}, b.centre_mm, kCoordinate_mm);
+  v.number({"radius_mm", "mm", "From its centre to its surface"}, b.radius_mm, {0.1, 1000});
+  v.number({"albedo", "", "Of what does not mirror"}, b.albedo, {0.001, 1});
+  v.number({"highlight_deg", "degrees", "Standard deviation of a mirrored lamp's brightness"},
+           b.highlight_deg, {0.1, 10});
+}
+
 }  // namespace weft::simulator

@@ -162,6 +162,7 @@ inline Scene everything(std::size_t number) {
   s.films = {FilmStates::kBoth, 0.02, 0.8};
   s.pose = {10, 20};
   const SheetSettings sheet = {1, 70, 2, 3, 0.2, 0.25};
+  s.balls = {{BallSurface::kGlossy, {4, 5, 26}, 12, 0.03, 2}};
   s.targets = {{PaperSettings{100, 50}, {1, 2, 3}, 10, 20, 30, 0.8, 0.05, sheet},
                {CheckerboardSettings{9, 6, 10, 5}, {4, 5, 6}, 11, 21, 31, 0.81, 0.051, sheet},
                {CharucoSettings{6, 4, 18, 0.7, "DICT_4X4_50", 8}, {}, 0, 0, 0, 0.9, 0.04, {}},
