@@ -343,10 +343,12 @@ Result<ImportProposal> plan_import(const ImportOptions& options, const JobContex
   plan.archive = place->archive;
   plan.link = options.link;
   if (found->frames.empty() && found->light_files.empty() && found->photo_folders.empty()) {
-    return Error{ErrorKind::kNoInput, "there are no photographs", options.folders.front(),
-                 found->left_over.empty() ? "the folder is empty"
-                                          : "no file in it is a raw, TIFF or EXR frame or has lights",
-                 "name the folder of the raw files"};
+    return Error{
+        ErrorKind::kNoInput, "there are no photographs", options.folders.front(),
+        found->left_over.empty() ? "the folder is empty"
+                                 : "no file in it is a raw, TIFF or EXR frame or has lights",
+        "name the folder of the raw files; where a ball lies in photographs, `weft lights FOLDER --ball` "
+        "tells their lights first"};
   }
   plan.photographs = plan_photographs(*found, plan.archive);
   drop_used(plan.photographs, *found);

@@ -50,6 +50,10 @@ Result<void> write_new(const fs::path& file, const std::string& text) {
 
 }  // namespace
 
+Result<void> write_light_file(const LightList& list, const fs::path& file) {
+  return write_new(file, light_file_of(list, fs::absolute(file).lexically_normal().parent_path()));
+}
+
 LightAngles angles_of(const ListedLight& light) {
   const Vec3 d = light.direction();
   return {degrees(std::atan2(d.y, d.x)), degrees(std::atan2(d.z, std::hypot(d.x, d.y)))};
@@ -76,9 +80,7 @@ Result<LightsReport> look_at_lights(const LightsOptions& options) {
   if (const Result<void> found = find_photographs(place, report.list); !found)
     report.not_found = found.error().message();
   if (!options.output.empty()) {
-    const fs::path folder = fs::absolute(options.output).lexically_normal().parent_path();
-    if (Result<void> ok = write_new(options.output, light_file_of(report.list, folder)); !ok)
-      return std::move(ok).error();
+    if (Result<void> ok = write_light_file(report.list, options.output); !ok) return std::move(ok).error();
   }
   if (!options.picture.empty()) {
     if (Result<void> ok = write_new(options.picture, picture_of(report.list)); !ok)

@@ -30,6 +30,9 @@ struct LightsReport {
 /// are relative to its folder. Errors of reading; kCannotCreate for a file that is there.
 Result<LightsReport> look_at_lights(const LightsOptions& options);
 
+/// An RTI light file as look_at_lights() writes it. kCannotCreate for a file that is there.
+Result<void> write_light_file(const LightList& list, const std::filesystem::path& file);
+
 /// From x towards y, and above the table.
 struct LightAngles {
   double azimuth_deg = 0, elevation_deg = 0;

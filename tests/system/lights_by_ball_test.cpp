@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// `weft lights --ball`: from a folder of photographs without a light file to a solve.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/image_io/image_io.h"
+#include "simulator/scene/scene_rig.h"
+#include "simulator/simulate.h"
+#include "tests/system/program.h"
+#include "tests/system/workspace.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Size kFrame = {320, 240};
+constexpr double kPixel_mm = 0.5, kDistance_mm = 600;
+
+class LightsByBall : public testing::Test {
+ protected:
+  // A twill with or without a chrome ball, as float files shot02.exr to shot11.exr.
+  simulator::Scene photograph(const fs::path& folder, bool with_ball) const {
+    simulator::Scene scene;
+    scene.camera.width = kFrame.width;
+    scene.camera.height = kFrame.height;
+    scene.camera.mm_per_pixel = kPixel_mm;
+    scene.camera.distance_mm = kDistance_mm;
+    scene.geometry.kind = simulator::GeometryKind::kTwill;
+    scene.geometry.warp_pitch_mm = scene.geometry.weft_pitch_mm = 3;
+    if (with_ball) {
+      simulator::BallSettings& ball = scene.balls.emplace_back();
+      ball.centre_mm = {20, -12, 33};
+      ball.radius_mm = 28;
+      ball.highlight_deg = 2;
+    }
+    const auto rendering = simulator::render_readings(scene, {0, 0, kFrame.width, kFrame.height});
+    EXPECT_TRUE(rendering) << rendering.error().message();
+    fs::create_directories(folder);
+    for (int k = 0; k < rendering->readings.planes() / 3; ++k) {
+      Image<float> shot(kFrame, 3);
+      for (int c = 0; c < 3; ++c) {
+        for (int y = 0; y < kFrame.height; ++y) {
+          for (int x = 0; x < kFrame.width; ++x)
+            shot(x, y, c) = static_cast<float>(std::min(1.0, 0.02 * rendering->readings(x, y, 3 * k + 1)));
+        }
+      }
+      const std::array<View<const float>, 3> planes = {shot.plane(0), shot.plane(1), shot.plane(2)};
+      EXPECT_TRUE(write_image(folder / fmt::format("shot{:02}.exr", k + 2), planes, {"R", "G", "B"}, {}));
+    }
+    return scene;
+  }
+  static void expect_true(const Json& told, const simulator::Scene& scene) {
+    const auto truth =
+        simulator::distant_lights(*simulator::rig_of(scene), scene.geometry.cloth_height_mm).lights;
+    ASSERT_EQ(told["lights"].size(), truth.size()) << told;
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      const Json& d = told["lights"][k]["direction"];
+      EXPECT_LT(angle_deg({d[0], d[1], d[2]}, truth[k].direction), 0.3) << k;
+    }
+  }
+  std::vector<std::string> lights(std::vector<std::string> more) const {
+    const std::string fov =
+        fmt::format("{}", degrees(2 * std::atan(kFrame.width * kPixel_mm / 2 / kDistance_mm)));
+    std::vector<std::string> words = {"lights", (work_ / "cloth").string(), "--fov", fov};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  Workspace work_;
+};
+
+TEST_F(LightsByBall, AFolderWithABallAndNoLightFileIsSolvedWithoutTheBall) {
+  const simulator::Scene scene = photograph(work_ / "cloth", true);
+  const Outcome told = run_weft(lights({"--json", "--ball"}));
+  ASSERT_EQ(told.exit_code, 0) << told.error;
+  expect_true(told.json(), scene);
+  EXPECT_TRUE(fs::exists(work_ / "cloth" / "balls.png"));
+  const Result<LoadedImage> mask = read_image(work_ / "cloth" / "mask.png");
+  ASSERT_TRUE(mask) << mask.error().message();
+  EXPECT_EQ(mask->planes(201, 145), 0) << "the ball's middle";
+  EXPECT_EQ(mask->planes(40, 40), 1);
+  const Outcome solve = run_weft({"solve", "--photos", (work_ / "cloth").string(), "-o",
+                                  (work_ / "maps").string(), "--no-previews", "-q"});
+  ASSERT_EQ(solve.exit_code, 0) << solve.error;
+  // What is there stays.
+  const Outcome again = run_weft(lights({"--ball"}));
+  EXPECT_EQ(again.exit_code, 73) << again.error;
+  EXPECT_THAT(again.error, testing::HasSubstr("lights.lp"));
+}
+
+TEST_F(LightsByBall, ABallPhotographedFirstGoesByName) {
+  const simulator::Scene scene = photograph(work_ / "ball", true);
+  photograph(work_ / "cloth", false);
+  const Outcome told = run_weft(lights({"--json", "--ball-folder", (work_ / "ball").string(), "--ball",
+                                        "204,143,57", "-o", (work_ / "lights.lp").string()}));
+  ASSERT_EQ(told.exit_code, 0) << told.error;
+  const Json document = told.json();
+  expect_true(document, scene);
+  EXPECT_FALSE(document["balls"][0]["as_told"]);
+  EXPECT_FALSE(fs::exists(work_ / "cloth" / "mask.png")) << "no ball lies on the cloth";
+  EXPECT_THAT(bytes_of(work_ / "lights.lp"), testing::HasSubstr("cloth/shot02.exr "));
+}
+
+TEST_F(LightsByBall, WhatCannotBeToldIsNamed) {
+  photograph(work_ / "cloth", false);
+  expect_refusal(work_, lights({"--ball"}), 65, {"no ball is seen", "--ball X,Y,R"});
+  expect_refusal(work_, lights({"--ball", "12,x,3"}), 64, {"--ball", "12,x,3", "centre and radius"});
+  expect_refusal(work_, lights({"--ball-folder", (work_ / "none").string()}), 66, {"cannot read", "none"});
+}
+
+}  // namespace
+}  // namespace weft::test
