@@ -35,6 +35,7 @@ struct TexturedParameter {
 struct TexturedMaterial {
   std::string name;                              ///< of the cloth
   std::optional<std::array<double, 2>> size_mm;  ///< width and height that a texture covers; none: not known
+  bool is_size_known = true;                     ///< else `size_mm` is assumed
   bool repeats = false;                          ///< the right border goes on at the left one, and so down
 
   TexturedParameter base_color;                ///< albedo, linear Rec.709, 0 to 1

@@ -20,6 +20,7 @@
 #include "exchange/export/export_request.h"
 #include "exchange/export/preset_files.h"
 #include "library/chain/make.h"
+#include "solve/session/solved.h"
 
 namespace weft::app {
 namespace {
@@ -71,7 +72,8 @@ void print_report(const exchange::ExportReport& report) {
   if (report.was_there) print("  is there already: same maps, same preset, same options");
   const std::string size = facts.size_mm.empty()
                                ? "size not known"
-                               : fmt::format("{:.6g} x {:.6g} mm", facts.size_mm[0], facts.size_mm[1]);
+                               : fmt::format("{:.6g} x {:.6g} mm{}", facts.size_mm[0], facts.size_mm[1],
+                                             facts.is_size_known ? "" : " assumed");
   print(fmt::format("  {} x {} pixels, {}, normals {}, roughness as {}", facts.size.width, facts.size.height,
                     size, facts.normal, facts.roughness));
   for (const std::string& line : report.source) print("  " + line);
@@ -86,11 +88,23 @@ void print_report(const exchange::ExportReport& report) {
   for (const std::string& text : facts.notes) print("  " + text);
 }
 
+// What a person says of photographs; all else knows its size.
+Result<void> keep_pixel(exchange::ExportOptions& options) {
+  if (!options.mm_per_pixel) return {};
+  if (solve::read_solved(options.input)) {
+    if (Result<void> ok = solve::keep_pixel(options.input, options.mm_per_pixel); !ok) return ok;
+  }
+  if (!options.mm_per_pixel) return {};
+  return Error{ErrorKind::kUsage, "the size of a pixel is said of a solve of photographs alone",
+               "--mm-per-pixel", options.input.string() + " is none", "leave it out"};
+}
+
 // Whoever names maps, or is content with a draft, gets what there is.
 Result<void> make_maps_first(exchange::ExportOptions& options, const JobContext& context,
                              const library::TellStep& tell) {
-  if (!is_there(options.input / "session.json") || !options.maps.empty() || options.is_draft) return {};
-  Result<std::filesystem::path> made = library::make_maps_first(options.input, context, tell);
+  if (!solve::read_solved(options.input) || !options.maps.empty() || options.is_draft) return {};
+  Result<std::filesystem::path> made =
+      library::make_maps_first(options.input, options.presets, context, tell);
   if (!made) return std::move(made).error();
   if (!made->empty()) options.maps = made->filename().string();
   return {};
@@ -102,6 +116,7 @@ Result<int> run_export(const exchange::ExportRequest& a, const CommonArguments& 
       [&]() -> Result<std::vector<exchange::ExportReport>> {
     ProgressLine line(common.quiet);
     const JobContext context = {common.threads, stop_on_signal(), line.callback()};
+    if (Result<void> ok = keep_pixel(options); !ok) return std::move(ok).error();
     if (Result<void> ok = make_maps_first(options, context, line.teller()); !ok) return std::move(ok).error();
     return exchange::export_maps(options, context);
   }();

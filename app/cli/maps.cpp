@@ -17,6 +17,7 @@
 #include "material/run/maps_price.h"
 #include "material/run/maps_request.h"
 #include "material/run/session_sets.h"
+#include "solve/session/solved.h"
 
 namespace weft::app {
 namespace {
@@ -107,7 +108,9 @@ Result<int> make(const material::MapsRequest& arguments, const CommonArguments& 
 Run add_maps(Options& options) {
   const auto a = std::make_shared<material::MapsRequest>();
   add_options(options, *a);
-  return [a](const CommonArguments& common) {
+  return [a](const CommonArguments& common) -> Result<int> {
+    if (Result<void> ok = solve::keep_pixel(a->maps.session, a->maps.mm_per_pixel); !ok)
+      return std::move(ok).error();
     if (a->maps.maps.empty())
       for (const material::DerivedMap& map : material::derived_maps()) a->maps.maps.emplace_back(map.name);
     if (a->only_explains || a->aims.to || a->aims.within_s) {
@@ -165,7 +168,9 @@ Result<int> price_grids(material::FinishRequest& arguments, const CommonArgument
 Run add_finish(Options& options) {
   const auto a = std::make_shared<material::FinishRequest>();
   add_options(options, *a);
-  return [a](const CommonArguments& common) {
+  return [a](const CommonArguments& common) -> Result<int> {
+    if (Result<void> ok = solve::keep_pixel(a->maps.session, a->maps.mm_per_pixel); !ok)
+      return std::move(ok).error();
     if (a->only_explains || a->grid.is_one()) {
       const Result<int> priced = price_grids(*a, common);
       if (!priced || a->only_explains) return priced;

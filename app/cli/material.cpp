@@ -94,7 +94,8 @@ void print_build(const material::BuildReport& report) {
     print(each.folder.string());
     if (each.was_there) print("  is there already: nothing that it depends on has changed");
     const std::string size = d.contains("size_mm")
-                                 ? fmt::format(" of {:.5g} mm", d["mm_per_pixel"].get<double>())
+                                 ? fmt::format(" of {:.5g} mm{}", d["mm_per_pixel"].get<double>(),
+                                               d.value("size_known", true) ? "" : " assumed")
                                  : ", of no known size";
     print(fmt::format("  {}: {} x {} pixels{}{}", d["name"].get<std::string>(), d["width"].get<int>(),
                       d["height"].get<int>(), size, d["is_tile"].get<bool>() ? ", a tile" : ""));

@@ -10,11 +10,14 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
 #include "material/run/session_sets.h"
+#include "solve/session/solved.h"
 
 namespace weft::app {
 namespace {
 
-Result<int> rectify(const material::RectifyOptions& options, const CommonArguments& common) {
+Result<int> rectify(material::RectifyOptions& options, const CommonArguments& common) {
+  if (Result<void> ok = solve::keep_pixel(options.session, options.mm_per_pixel); !ok)
+    return std::move(ok).error();
   const Result<material::RectifyReport> report = [&] {
     ProgressLine line(common.quiet);
     return material::rectify_session(options, {common.threads, stop_on_signal(), line.callback()});

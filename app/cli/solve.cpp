@@ -266,7 +266,11 @@ Result<int> solve(solve::SolveRequest& arguments, const CommonArguments& common)
     print_json(json_of(*report));
   } else {
     print_words(*report);
-    if (is_session) print_other_current(*report, arguments.session.folder);
+    if (is_session) {
+      print_other_current(*report, arguments.session.folder);
+    } else {
+      print(fmt::format("  to go on: weft export {} --preset glb", report->folder.string()));
+    }
     if (arguments.check) print_check(report->facts);
   }
   const SolveFacts& facts = report->facts;

@@ -12,6 +12,7 @@
 #include "app/cli/verb.h"
 #include "core/base/iso_time.h"
 #include "library/chain/chain.h"
+#include "solve/session/solved.h"
 
 namespace weft::app {
 namespace {
@@ -49,7 +50,7 @@ Result<int> status(const StatusArguments& a, const CommonArguments& common) {
   Json chains = Json::array();
   bool is_fresh = true;
   for (const std::string& folder : a.sessions) {
-    const Result<Session> session = read_session(std::filesystem::absolute(folder).lexically_normal());
+    const Result<Session> session = solve::read_solved(std::filesystem::absolute(folder).lexically_normal());
     if (!session) return session.error();
     const library::Chain chain = library::chain_of(*session);
     is_fresh = is_fresh && chain.is_fresh;

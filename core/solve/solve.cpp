@@ -7,6 +7,7 @@
 #include <array>
 #include <numbers>
 
+#include "core/base/files.h"
 #include "core/base/percent.h"
 #include "core/describe/field_json.h"
 
@@ -15,13 +16,25 @@ namespace {
 
 constexpr std::array<const char*, 2> kColors = {"camera", "rec709"};
 
+// That of photographs stands alone, in the folder that stands for their session.
+std::optional<Product> own_solve(const std::filesystem::path& session) {
+  const std::filesystem::path file = session / kSolveProduct.document;
+  if (!is_there(file)) return {};
+  const Result<Json> document = read_json(file, kSolveProduct.schema, 1);
+  if (!document || !document->value("id", Json()).is_string()) return {};
+  return Product{kSolveProduct, (*document)["id"].get<std::string>(), absolute_folder(session)};
+}
+
 }  // namespace
 
 Result<Product> find_solve(const std::filesystem::path& session, const std::string& id) {
+  const std::optional<Product> own = own_solve(session);
+  if (own && own->id == id) return *own;
   return find_product(kSolveProduct, session / "solve", id);
 }
 
 std::vector<Product> list_solves(const std::filesystem::path& session) {
+  if (const std::optional<Product> own = own_solve(session)) return {*own};
   return list_products(kSolveProduct, session / "solve");
 }
 

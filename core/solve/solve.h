@@ -28,7 +28,7 @@ inline constexpr ProductKind kSolveProduct = {"weft.solve", "solve.json", "solve
                                               "solve the session first with weft solve"};
 
 /// The complete solve of a session that has this id; kNoInput where there is none. Which of them is current
-/// says solve/session/current.h.
+/// says solve/session/current.h. A solve of photographs lies in the folder that stands for their session.
 Result<Product> find_solve(const std::filesystem::path& session, const std::string& id);
 
 /// The complete solves of a session, the oldest first.

@@ -53,6 +53,7 @@ std::string text_in(const Json& metadata, const char* key) {
 U3mOptions u3m_options(const DocumentInput& input) {
   U3mOptions options;
   options.description = "Scanned with weft";
+  if (!input.material.is_size_known) options.description += "; its size is not known, and assumed";
   options.digest = sha256_of(input.cloth.preset.inputs.dump());
   options.created = options.modified = "1970-01-01T00:00:00Z";
   if (!input.cloth.maps.session) return options;

@@ -180,7 +180,7 @@ Result<void> Encoder::run_one(Task& task, const MapPlanes& planes, const Channel
                         .facts = facts,
                         .lobe = planes.lobe(),
                         .size = task.preset->size,
-                        .pitch_mm = task.preset->pitch_mm,
+                        .pitch_mm = folder_.is_size_known ? task.preset->pitch_mm : PixelPitch(),
                         .is_tile = folder_.is_tile,
                         .is_dx10 = is_dx10_,
                         .attributes = {{"weft." + folder_.kind, folder_.id}}};

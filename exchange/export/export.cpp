@@ -204,6 +204,7 @@ ExportFacts export_facts(const FilledPreset& preset, const MapFolder& folder, co
       .normal = preset.preset.normal,
       .roughness = kRoughnessConventionNames[static_cast<std::size_t>(preset.preset.roughness)],
       .size = preset.size,
+      .is_size_known = folder.is_size_known,
       .is_tile = folder.is_tile,
       .albedo_scale = folder.albedo_scale,
       .notes = preset.notes,

@@ -30,6 +30,13 @@ void describe(Fields& fields, ExportRequest& r) {
                 .says = "Pixels of the longer side; default as many as there are",
                 .range = {1, 1 << 20}},
                e.size_px);
+  fields.value({.name = "mm_per_pixel",
+                .says = "Of a solve of photographs: what a pixel of them is wide on the cloth, kept for all "
+                        "that is made of it",
+                .range = {1e-4, 100},
+                .option = "--mm-per-pixel",
+                .said = Said::kAtThisMachine},
+               e.mm_per_pixel);
   fields.value({.name = "dx10", .says = "DDS files with headers of DX10 alone, which say sRGB"}, e.is_dx10);
   fields.value({.name = "list", .says = "Only list the presets", .said = Said::kAtThisMachine}, r.lists);
   fields.value({.name = "show",

@@ -17,6 +17,7 @@
 #include "exchange/document.h"
 #include "material/run/maps.h"
 #include "material/run/session_sets.h"
+#include "solve/session/solved.h"
 
 namespace weft::exchange {
 namespace {
@@ -50,12 +51,13 @@ Result<fs::path> set_of_session(const MapFolderWish& wish) {
     if (!found) return found.error();
     return found->folder;
   }
-  const Result<Session> session = read_session(wish.input);
+  const Result<Session> session = solve::read_solved(wish.input);
   if (!session) return session.error();
   const solve::SessionSolves solves = solve::solves_of(*session);
   const std::vector<material::SessionSet> sets = material::sets_of(solves);
   if (const material::SessionSet* set = material::set_to_use(solves, sets, wish.wanted))
     return set->product.folder;
+  if (solves.is_of_photographs) return wish.input;
   return Error{ErrorKind::kNoInput, fmt::format("there is no complete {}", material::kMapsProduct.noun),
                (wish.input / "maps").string(), "no folder there holds a maps.json that can be read",
                fmt::format("make it first with weft maps {}", wish.input.string())};
@@ -110,11 +112,15 @@ Result<void> add_parameters(const Json& parameters, const std::string& where,
   return {};
 }
 
-// A set lies in SESSION/maps/ID, a solve in SESSION/solve/ID.
+// A set lies in SESSION/maps/ID, a solve in SESSION/solve/ID; one of photographs stands for their session.
 void find_session(MapFolder& folder) {
-  const fs::path session = absolute_folder(folder.folder).parent_path().parent_path();
-  if (!is_there(session / "session.json")) return;
-  if (Result<Session> read = read_session(session)) folder.session = std::move(*read);
+  const fs::path own = absolute_folder(folder.folder);
+  for (const fs::path& session : {own.parent_path().parent_path(), own}) {
+    if (!solve::is_solved(session)) continue;
+    Result<Session> read = solve::read_solved(session);
+    if (read) folder.session = std::move(*read);
+    if (read) return;
+  }
 }
 
 // Which solve it comes from, how good that is, and what speaks against it today.
@@ -177,6 +183,7 @@ Result<MapFolder> read_folder(const fs::path& path, const FolderKind& kind) {
     fields.reject("width", "must be above 0, and height too");
   folder.mm_per_pixel = fields.optional_number("mm_per_pixel");
   if (folder.mm_per_pixel && !(*folder.mm_per_pixel > 0)) fields.reject("mm_per_pixel", "must be above 0");
+  folder.is_size_known = !document->contains("size_known") || (*document)["size_known"] != false;
   folder.is_tile = document->contains("is_tile") && (*document)["is_tile"] == true;
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
   if (folder.kind != "solve") {
@@ -237,7 +244,8 @@ const material::MapFacts* MapFolder::map(const std::string& wanted) const {
 Result<MapFolder> open_map_folder(const MapFolderWish& wish) {
   const fs::path& input = wish.input;
   fs::path folder = input;
-  if (is_there(input / "session.json")) {
+  const bool is_session = solve::read_solved(input) || is_there(input / "session.json");
+  if (is_session) {
     const Result<fs::path> set = set_of_session(wish);
     if (!set) return set.error();
     folder = *set;
@@ -285,11 +293,14 @@ Result<Json> provenance_of(const MapFolder& folder) {
   if (!folder.stale.empty()) json["stale"] = folder.stale;
   if (!folder.session) return json;
   const Session& session = *folder.session;
-  const Result<std::string> session_digest = sha256_of_file(session.folder / "session.json");
-  if (!session_digest) return session_digest.error();
-  json["session"] = {
-      {"name", session.folder.filename().string()}, {"fabric", session.fabric}, {"sha256", *session_digest}};
-  json["calibration"] = session.calibration_id;
+  if (!solve::photographed_pixel(session)) {
+    const Result<std::string> session_digest = sha256_of_file(session.folder / "session.json");
+    if (!session_digest) return session_digest.error();
+    json["session"] = {{"name", session.folder.filename().string()},
+                       {"fabric", session.fabric},
+                       {"sha256", *session_digest}};
+    json["calibration"] = session.calibration_id;
+  }
   json["raws"] = Json::array();
   for (const Shot& shot : session.shots)
     json["raws"].push_back({{"file", shot.file}, {"sha256", shot.sha256}});

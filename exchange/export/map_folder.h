@@ -25,13 +25,14 @@ struct MapFolder {
   std::string name;   ///< of the cloth in names of files
   Size size;
   std::optional<double> mm_per_pixel;  ///< none: photographs do not tell
+  bool is_size_known = true;           ///< else it is assumed
   bool is_tile = false;
   std::string albedo_scale;  ///< "absolute", "relative" or, where nobody says, "unknown"
   std::vector<material::MapFacts>
       maps;                   ///< `document`: its entry; a parameter of several numbers has them there
   std::string document_file;  ///< "maps.json"
   Json document;
-  std::optional<Session> session;  ///< that it lies in
+  std::optional<Session> session;  ///< that it lies in, or the photographs that it was solved from
   /// The solve's level, whether it is a preview, and why it is stale today, a sentence each.
   std::string level = {};
   bool is_draft = false;
@@ -42,7 +43,7 @@ struct MapFolder {
 
 /// What is opened, and what it is for.
 struct MapFolderWish {
-  std::filesystem::path input;           ///< a session, or a folder as above
+  std::filesystem::path input;           ///< a session, a solve of photographs, or a folder as above
   std::string maps_id = {};              ///< of a session's sets; empty: set_to_use() says it
   std::vector<std::string> wanted = {};  ///< maps, of which a session's set should be
   bool is_draft = false;                 ///< maps of a preview will do

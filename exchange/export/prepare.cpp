@@ -52,8 +52,8 @@ Result<Size> size_of(const ExportOptions& options, const MapFolder& folder, cons
 
 PixelPitch pitch_of(const MapFolder& folder, Size size) {
   if (!folder.mm_per_pixel) return {};
-  return {*folder.mm_per_pixel * folder.size.width / size.width,
-          *folder.mm_per_pixel * folder.size.height / size.height};
+  return {*folder.mm_per_pixel * (static_cast<double>(folder.size.width) / size.width),
+          *folder.mm_per_pixel * (static_cast<double>(folder.size.height) / size.height)};
 }
 
 Result<std::string> name_of(const ExportOptions& options, const MapFolder& folder) {
@@ -122,6 +122,11 @@ Result<void> add_documents(const MapFolder& folder, FilledPreset& filled, std::s
 void add_notes(const MapFolder& folder, FilledPreset& filled) {
   if (!folder.mm_per_pixel)
     filled.notes.emplace_back("The size is not known: these maps state no millimetres.");
+  if (folder.mm_per_pixel && !folder.is_size_known) {
+    filled.notes.push_back(fmt::format(
+        "The size is not known: {:.4g} mm a pixel is assumed. weft export FOLDER --mm-per-pixel says it.",
+        *folder.mm_per_pixel));
+  }
   if (folder.albedo_scale == "relative")
     filled.notes.emplace_back("The albedo is relative: it lacks one common factor to be a reflectance.");
   if (!folder.is_tile)
@@ -245,10 +250,24 @@ Result<ExportOptions> with_built_material(ExportOptions options, Json& scans, co
   return options;
 }
 
-// Maps that files of the presets cannot do without, and that not every set has.
-std::vector<std::string> needed_maps(const ExportOptions& options) {
+// The preset's textures of one layer, below a folder of its name.
+Result<FilledPreset> fill_layer(const FilledPreset& filled, const material::RuntimeLayer& layer,
+                                const MapFolder& maps) {
+  Preset preset = filled.preset;
+  preset.documents.clear();
+  const std::string name = file_name_of(layer.name, "layer");
+  for (PresetFile& file : preset.files)
+    file.name = fmt::format("layers/{}/{}", name, fs::path(file.name).filename().string());
+  ExportOptions options = {.input = layer.folder, .name = name};
+  options.presets = {preset.name};
+  return fill_preset(options, maps, std::move(preset));
+}
+
+}  // namespace
+
+std::vector<std::string> needed_maps(const std::vector<std::string>& presets) {
   std::set<std::string> needed;
-  for (const std::string& name : options.presets) {
+  for (const std::string& name : presets) {
     const Result<Preset> preset = read_preset(name);
     if (!preset) continue;  // fill_preset() says why
     for (const PresetFile& file : preset->files) {
@@ -266,28 +285,13 @@ std::vector<std::string> needed_maps(const ExportOptions& options) {
   return derived;
 }
 
-// The preset's textures of one layer, below a folder of its name.
-Result<FilledPreset> fill_layer(const FilledPreset& filled, const material::RuntimeLayer& layer,
-                                const MapFolder& maps) {
-  Preset preset = filled.preset;
-  preset.documents.clear();
-  const std::string name = file_name_of(layer.name, "layer");
-  for (PresetFile& file : preset.files)
-    file.name = fmt::format("layers/{}/{}", name, fs::path(file.name).filename().string());
-  ExportOptions options = {.input = layer.folder, .name = name};
-  options.presets = {preset.name};
-  return fill_preset(options, maps, std::move(preset));
-}
-
-}  // namespace
-
 Result<PreparedExport> prepare_export(const ExportOptions& asked, const JobContext& context) {
   Json scans;
   Result<ExportOptions> options = with_built_material(asked, scans, context);
   if (!options) return std::move(options).error();
   Result<MapFolder> folder = open_map_folder({.input = options->input,
                                               .maps_id = options->maps,
-                                              .wanted = needed_maps(*options),
+                                              .wanted = needed_maps(options->presets),
                                               .is_draft = options->is_draft});
   if (!folder) return std::move(folder).error();
   if (!scans.is_null()) folder->document["scans"] = std::move(scans);

@@ -47,6 +47,9 @@ struct PreparedExport {
   std::vector<FilledPreset> presets;  ///< each in a folder of its own
 };
 
+/// Derived maps that files of these presets cannot do without. A preset that is none needs nothing.
+std::vector<std::string> needed_maps(const std::vector<std::string>& presets);
+
 /// Builds the material where the input is one, opens its folder and fills in each preset: checks all that can
 /// be checked without a pixel. Errors of build_materials() and export_maps().
 Result<PreparedExport> prepare_export(const ExportOptions& asked, const JobContext& context);

@@ -178,6 +178,7 @@ TexturedMaterial textured_material(const ClothTextures& cloth) {
   material.name = preset.title;
   if (preset.pitch_mm[0] > 0)
     material.size_mm = {preset.pitch_mm[0] * preset.size.width, preset.pitch_mm[1] * preset.size.height};
+  material.is_size_known = maps.is_size_known;
   material.repeats = maps.is_tile;
   material.base_color =
       of({"albedo.r", "albedo.g", "albedo.b"}).value_or(TexturedParameter{.constant = {0.5, 0.5, 0.5}});

@@ -284,6 +284,7 @@ Json provenance_of(const TexturedMaterial& material, const ShownPlane& plane) {
   Json extras = {{"size_mm", nullptr}};
   if (material.size_mm) {
     extras["size_mm"] = *material.size_mm;
+    if (!material.is_size_known) extras["size_known"] = false;
   } else {
     extras["size_note"] = "the size is not known; the rectangle is one metre wide";
   }

@@ -47,7 +47,8 @@ void open_document(XmlWriter& xml, const std::string& name,
 
 std::string size_note_of(const TexturedMaterial& material) {
   if (!material.size_mm) return "size not known";
-  return "size_mm " + numbers_text({(*material.size_mm)[0], (*material.size_mm)[1]});
+  const std::string size = "size_mm " + numbers_text({(*material.size_mm)[0], (*material.size_mm)[1]});
+  return material.is_size_known ? size : size + ", assumed: the size is not known";
 }
 
 void write_material(XmlWriter& xml, const std::string& name, const std::string& shader,

@@ -74,6 +74,10 @@ void describe(Fields& fields, ExportFacts& f) {
                 .fewest = 2,
                 .most = 2},
                f.size_mm);
+  const bool is_said = f.document.is_object() && f.document.contains("size_known");
+  fields.only_if(is_said || !f.is_size_known, [&] {
+    fields.value({"size_known", "False: nobody said it, and millimetres are assumed"}, f.is_size_known);
+  });
   fields.value({"is_tile", "It goes on over its borders"}, f.is_tile);
   fields.value({"albedo_scale", "absolute, relative or unknown"}, f.albedo_scale);
   fields.value({"notes", "Sentences that people should read"}, f.notes);

@@ -62,6 +62,7 @@ struct ExportFacts {
   std::string normal, roughness;                        ///< the preset's direction and convention
   Size size = {};                                       ///< of the largest level
   std::vector<double> mm_per_pixel = {}, size_mm = {};  ///< one of square pixels; empty: nobody knows
+  bool is_size_known = true;                            ///< else they are assumed
   bool is_tile = false;
   std::string albedo_scale = {};
   std::vector<std::string> notes = {};

@@ -374,9 +374,9 @@ Result<Document> u3m_of(const TexturedMaterial& material, const U3mOptions& opti
                 {"side", nullptr},
                 {"physics", is_known(options.physics) ? physics_of(options.physics) : Json()},
                 {"metadata", nullptr}};
-  const Json root = {{"schema", "1.1"},
-                     {"material", asset},
-                     {"custom", {{"weft", {{"size_mm", *material.size_mm}, {"provenance", provenance}}}}}};
+  Json own = {{"size_mm", *material.size_mm}, {"provenance", provenance}};
+  if (!material.is_size_known) own["size_known"] = false;
+  const Json root = {{"schema", "1.1"}, {"material", asset}, {"custom", {{"weft", std::move(own)}}}};
   document.bytes = root.dump(1) + "\n";
   return document;
 }

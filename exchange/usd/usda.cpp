@@ -33,6 +33,7 @@ void write_layer_data(UsdaWriter& usda, const TexturedMaterial& material, const 
   usda.begin_list("dictionary weft = {");
   if (material.size_mm) {
     usda.line("double2 size_mm = " + usda_tuple({(*material.size_mm)[0], (*material.size_mm)[1]}));
+    if (!material.is_size_known) usda.line("bool size_known = false");
   } else {
     usda.line("string size_note = \"the size is not known; the rectangle is one metre wide\"");
   }

@@ -18,6 +18,7 @@
 #include "library/catalogue/session_verdict.h"
 #include "material/run/session_sets.h"
 #include "solve/report/solve_report.h"
+#include "solve/session/solved.h"
 
 namespace weft::library {
 namespace {
@@ -69,6 +70,11 @@ class SolvesOnDisk {
     if (!facts || !facts->taken) return;
     link.mean_deg = facts->taken->mean_deg;
     link.solved = facts->taken->solved;
+  }
+
+  // Why maps have another size than those that would be made today.
+  std::string why_other_size(const solve::SourceFacts& source) const {
+    return solve::why_other_size(session_, source);
   }
 
   // Why the solve is not what would be made of the session today.
@@ -142,6 +148,8 @@ ChainLink maps_link(SolvesOnDisk& solves) {
   link.level = set->level;
   solves.tell_source(set->facts.source.solve, link);
   link.why = solves.why_stale(set->facts.source.solve);
+  if (std::string why = solves.why_other_size(set->facts.source); !why.empty())
+    link.why.push_back(std::move(why));
   link.freshness = freshness_of(set->is_draft, link.why);
   if (set->is_draft) link.why.insert(link.why.begin(), "they are of a preview");
   return link;

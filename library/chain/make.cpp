@@ -2,17 +2,20 @@
 #include "library/chain/make.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "exchange/export/export.h"
+#include "exchange/export/prepare.h"
 #include "exchange/export/preset_files.h"
 #include "library/catalogue/metadata.h"
 #include "material/run/maps.h"
 #include "material/run/session_sets.h"
 #include "solve/report/solve_report.h"
 #include "solve/run/solve_session.h"
+#include "solve/session/solved.h"
 
 namespace weft::library {
 namespace {
@@ -36,8 +39,10 @@ class Making {
 
  private:
   Result<solve::LevelPrice> priced_level();
+  Result<void> check_solve_of_photographs(const ChainLink& link) const;
   Result<void> make_current();
   std::vector<std::string> presets_wanted() const;
+  std::vector<std::string> lacking_maps(const fs::path& set) const;
   material::MapsOptions maps_like_the_newest(const solve::SessionSolves& solves) const;
   void tell_step(std::string step);
 
@@ -57,7 +62,7 @@ Result<void> Making::begin_with(const fs::path& session) {
   for (const std::string& preset : options_.presets) {
     if (const Result<exchange::Preset> known = exchange::read_preset(preset); !known) return known.error();
   }
-  Result<Session> read = read_session(fs::absolute(session).lexically_normal());
+  Result<Session> read = solve::read_solved(fs::absolute(session).lexically_normal());
   if (!read) return std::move(read).error();
   session_ = std::move(*read);
   before_ = chain_of(session_);
@@ -86,9 +91,20 @@ Result<solve::LevelPrice> Making::priced_level() {
   return std::move(ladder->levels[*chosen]);
 }
 
+// A solve of photographs does not know where they lie.
+Result<void> Making::check_solve_of_photographs(const ChainLink& link) const {
+  if (!options_.wish.is_one() && link.freshness != Freshness::kDraft) return {};
+  return Error{
+      options_.wish.is_one() ? ErrorKind::kUsage : ErrorKind::kNoInput,
+      "photographs are solved from their own folder", session_.folder.string(),
+      options_.wish.is_one() ? "this one holds their solve" : "this one holds the preview of a solve",
+      fmt::format("solve them with {}", command_to_solve(solve::solves_of(session_), "standard"))};
+}
+
 Result<void> Making::make_solve() {
   const ChainLink& link = before_.link("solve");
   solve_ = link.id;
+  if (solve::photographed_pixel(session_)) return check_solve_of_photographs(link);
   const bool is_fresh = link.freshness == Freshness::kFresh;
   const bool is_good_enough = options_.wish.to_deg && link.mean_deg && link.solved &&
                               deg_of_whole(*link.mean_deg, *link.solved) <= *options_.wish.to_deg;
@@ -145,11 +161,14 @@ material::MapsOptions Making::maps_like_the_newest(const solve::SessionSolves& s
 Result<void> Making::make_maps() {
   const ChainLink& link = before_.link("maps");
   const bool is_there = !is_new_ && link.freshness == Freshness::kFresh;
+  const std::vector<std::string> lacking = is_there ? lacking_maps(link.folder) : std::vector<std::string>();
   maps_ = link.folder;
-  if (is_there) return {};
+  if (is_there && lacking.empty()) return {};
   const material::MapsOptions how = maps_like_the_newest(solve::solves_of(session_));
   tell_step(fmt::format("make its maps{}{}", how.recipe.steps.empty() ? "" : ", finished as the newest are",
-                        is_new_ ? " of that" : reasons(link)));
+                        !lacking.empty() ? fmt::format(", as they are without {}", fmt::join(lacking, ", "))
+                        : is_new_        ? " of that"
+                                         : reasons(link)));
   if (options_.only_explains) return {};
   Stopwatch watch;
   const Result<material::MapsReport> made = material::make_maps(how, context_);
@@ -157,6 +176,13 @@ Result<void> Making::make_maps() {
   maps_ = made->folder;
   if (!made->was_there) report_.made.push_back({"maps", made->facts.id, maps_, watch.lap()});
   return {};
+}
+
+// What the presets cannot do without.
+std::vector<std::string> Making::lacking_maps(const fs::path& set) const {
+  const Result<material::MapSetFacts> facts = material::read_map_set(set);
+  if (!facts) return {};
+  return material::lacking(*facts, exchange::needed_maps(presets_wanted()));
 }
 
 // What was exported before, as far as its preset is there yet.
@@ -194,7 +220,7 @@ Result<void> Making::export_all() {
 }
 
 Result<MakeReport> Making::ended() {
-  const Result<Session> session = read_session(session_.folder);
+  const Result<Session> session = solve::read_solved(session_.folder);
   if (!session) return session.error();
   report_.chain = chain_of(*session);
   return std::move(report_);
@@ -204,7 +230,7 @@ Result<MakeReport> Making::ended() {
 
 void describe(Fields& fields, MakeOptions& options) {
   fields.value({.name = "session",
-                .says = "Session folder, NAME.weft",
+                .says = "Session folder, NAME.weft, or that of a solve of photographs",
                 .need = kMustSay,
                 .path = PathTo::kSession,
                 .option = ""},
@@ -239,7 +265,7 @@ Result<MakeReport> make_session(const MakeOptions& options, const JobContext& co
 
 Result<std::string> make_solve_first(const fs::path& session, const JobContext& context,
                                      const TellStep& tell) {
-  const Result<Session> read = read_session(session);
+  const Result<Session> read = solve::read_solved(session);
   if (!read) return read.error();
   if (solve::solve_for_maps(solve::solves_of(*read), "", false)) return std::string();
   const MakeOptions options;
@@ -249,12 +275,18 @@ Result<std::string> make_solve_first(const fs::path& session, const JobContext& 
   return making.solve();
 }
 
-Result<fs::path> make_maps_first(const fs::path& session, const JobContext& context, const TellStep& tell) {
-  const Result<Session> read = read_session(session);
+Result<fs::path> make_maps_first(const fs::path& session, const std::vector<std::string>& presets,
+                                 const JobContext& context, const TellStep& tell) {
+  const Result<Session> read = solve::read_solved(session);
   if (!read) return read.error();
-  const std::vector<material::SessionSet> sets = material::sets_of(solve::solves_of(*read));
-  if (!std::ranges::all_of(sets, &material::SessionSet::is_draft)) return fs::path();
-  const MakeOptions options;
+  const solve::SessionSolves solves = solve::solves_of(*read);
+  const std::vector<material::SessionSet> sets = material::sets_of(solves);
+  const std::vector<std::string> wanted = exchange::needed_maps(presets);
+  const material::SessionSet* const set = material::set_to_use(solves, sets, wanted);
+  if (set != nullptr && !set->is_draft && solve::why_other_size(*read, set->facts.source).empty() &&
+      material::lacking(set->facts, wanted).empty())
+    return fs::path();
+  const MakeOptions options = {.session = session, .presets = presets};
   Making making(options, context, tell);
   if (Result<void> ok = making.begin_with(session); !ok) return std::move(ok).error();
   if (Result<void> ok = making.make_solve(); !ok) return std::move(ok).error();

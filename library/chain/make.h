@@ -54,8 +54,10 @@ Result<MakeReport> make_session(const MakeOptions& options, const JobContext& co
 /// Returns its id; empty where there was one.
 Result<std::string> make_solve_first(const std::filesystem::path& session, const JobContext& context,
                                      const TellStep& tell);
-/// The same for `weft export`: maps that are no draft. Returns their folder.
-Result<std::filesystem::path> make_maps_first(const std::filesystem::path& session, const JobContext& context,
-                                              const TellStep& tell);
+/// The same for `weft export`: maps that are no draft and that these presets can be packed of, finished as
+/// the newest are. Returns their folder.
+Result<std::filesystem::path> make_maps_first(const std::filesystem::path& session,
+                                              const std::vector<std::string>& presets,
+                                              const JobContext& context, const TellStep& tell);
 
 }  // namespace weft::library

@@ -90,7 +90,7 @@ class Composer {
     facts.file = facts.name + ".exr";
     const std::vector<View<const float>> planes = planes_of(map);
     measure(facts, planes.front());
-    const double mm = surface_.mm_per_pixel;
+    const double mm = node_.is_size_known ? surface_.mm_per_pixel : 0;
     const WriteOptions options = {.type = SampleType::kFloat,
                                   .compression = options_.compression,
                                   .attributes = attributes_of(facts, mm),
@@ -359,6 +359,7 @@ class Composer {
     if (node_.size_mm) {
       document["mm_per_pixel"] = node_.mm_per_pixel();
       document["size_mm"] = *node_.size_mm;
+      if (!node_.is_size_known) document["size_known"] = false;
     }
     document["is_tile"] = node_.is_tile;
     document["albedo_scale"] = "absolute";

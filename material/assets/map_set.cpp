@@ -16,6 +16,7 @@
 #include "material/read/file_meaning.h"
 #include "material/run/maps.h"
 #include "material/run/session_sets.h"
+#include "solve/session/solved.h"
 
 namespace weft::material {
 namespace {
@@ -82,10 +83,9 @@ std::string source_of(const MapSet& set, const std::string& name) {
 bool has_relative_albedo(const MapSet& set) {
   if (set.document.value("albedo_scale", "") == name_of(AlbedoScale::kRelative)) return true;
   const std::string solve = set.document.value("solve", "");
-  const fs::path file =
-      absolute_folder(set.folder).parent_path().parent_path() / "solve" / solve / kSolveProduct.document;
-  if (solve.empty() || !is_there(file)) return false;
-  const Result<Json> document = read_json(file, kSolveProduct.schema, 1);
+  const Result<Product> found = find_solve(absolute_folder(set.folder).parent_path().parent_path(), solve);
+  if (!found) return false;
+  const Result<Json> document = read_json(found->folder / kSolveProduct.document, kSolveProduct.schema, 1);
   return document && document->value("albedo_scale", "") == name_of(AlbedoScale::kRelative);
 }
 
@@ -95,14 +95,18 @@ Json provenance_of(const MapSet& set, const fs::path& scan) {
     if (set.document.contains(key) && set.document[key].is_string())
       facts[key == std::string("id") ? "maps" : key] = set.document[key];
   }
-  if (is_there(scan / "session.json")) facts["session"] = scan.filename().string();
+  if (const Result<Session> session = solve::read_solved(scan)) {
+    const bool is_of_photographs = solve::photographed_pixel(*session).has_value();
+    facts["session"] = is_of_photographs ? session->fabric : scan.filename().string();
+  }
+  if (!set.is_size_known) facts["size_known"] = false;
   return facts;
 }
 
 // Masks follow the height, so a set that has one is preferred.
 Result<fs::path> folder_of_maps(const fs::path& scan) {
   if (is_there(scan / kMapsProduct.document) || is_there(scan / kMaterialProduct.document)) return scan;
-  const Result<Session> session = read_session(scan);
+  const Result<Session> session = solve::read_solved(scan);
   const solve::SessionSolves solves =
       session ? solve::solves_of(*session) : solve::SessionSolves{.session = scan, .all = {}};
   const std::vector<SessionSet> sets = sets_of(solves);
@@ -116,7 +120,7 @@ Result<fs::path> folder_of_maps(const fs::path& scan) {
 Result<void> find_solve_of(MapSet& set, bool draft) {
   bool is_draft = flag_at(set.document, "draft");
   std::string remedy = "make better ones with weft maps";
-  const Result<Session> session = read_session(absolute_folder(set.folder).parent_path().parent_path());
+  const Result<Session> session = solve::read_solved(absolute_folder(set.folder).parent_path().parent_path());
   if (const std::string id = text_at(set.document, "solve"); session && !id.empty()) {
     const solve::SessionSolves solves = solve::solves_of(*session);
     const solve::ChoosableSolve* const solve = solves.find(id);
@@ -326,6 +330,7 @@ MapFile file_in(const MapSet& set, const ScanMap& map) {
   }
   found.size = set.size;
   found.size_mm = set.size_mm;
+  found.is_size_known = set.is_size_known;
   found.is_tile = set.is_tile;
   found.is_of_scan = true;
   found.stale = set.stale;
@@ -391,6 +396,7 @@ Result<MapSet> open_map_set(const fs::path& scan, bool draft) {
   if (!(set.size.width > 0 && set.size.height > 0)) fields.reject("width", "must be above 0, as height");
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
   set.is_tile = document->value("is_tile", false);
+  set.is_size_known = document->value("size_known", true);
   if (mm > 0) set.size_mm = {{mm * set.size.width, mm * set.size.height}};
   set.document = std::move(*document);
   if (is_material && set.document.contains("size_mm"))
@@ -465,7 +471,8 @@ Result<void> expand_scan(MaterialFile& file) {
     if (is_draft) value["draft"] = true;
     file.surface[name] = {std::move(value), from};
   }
-  if (!file.top.contains("size_mm") && set->size_mm)
+  // An assumed size goes with the maps, so that one that is said stands for it.
+  if (!file.top.contains("size_mm") && set->size_mm && set->is_size_known)
     file.top["size_mm"] = {Json{(*set->size_mm)[0], (*set->size_mm)[1]}, from};
   if (!file.top.contains("is_tile")) file.top["is_tile"] = {Json(set->is_tile), from};
   file.top.erase("scan");

@@ -18,13 +18,14 @@
 
 namespace weft::material {
 
-/// A folder of maps of one size: of a session the set that set_to_use() says, with a height where one of them
-/// has it, a set (maps.json) or a built material (material.json).
+/// A folder of maps of one size: of a session or a solve of photographs the set that set_to_use() says, with
+/// a height where one of them has it, a set (maps.json) or a built material (material.json).
 struct MapSet {
   std::filesystem::path folder;
   Json document;
   Size size;
   std::optional<std::array<double, 2>> size_mm = {};
+  bool is_size_known = true;  ///< else it is assumed
   bool is_tile = false;
   bool is_albedo_relative = false;      ///< its albedo lacks one factor
   Json provenance = Json::object();     ///< ids back to the photographs, level of the solve, whether a draft
@@ -51,6 +52,7 @@ struct MapFile {
   std::optional<std::vector<double>> same = {};  ///< the whole map is this
   Size size = {};
   std::optional<std::array<double, 2>> size_mm = {};
+  bool is_size_known = true;  ///< else it is assumed
   bool is_tile = true;
   bool is_of_scan = false;
   Json provenance = Json::object();

@@ -43,6 +43,12 @@ std::string text_of(const NewMaterial& material) {
   text += "\n[surface]\n";
   if (material.inherits.empty() && material.scan.empty())
     text += "albedo = [0.5, 0.5, 0.5]\nroughness = 0.7\n";
+  if (material.is_albedo_relative) {
+    text += "# relative: scale is the factor that makes a reflectance of it\n";
+    text += fmt::format("albedo = {{ map = \"albedo\", scan = {}, scale = 1{} }}\n",
+                        quoted_text(as_written(material.scan.string(), folder)),
+                        material.is_draft ? ", draft = true" : "");
+  }
   std::map<std::string, int> names;
   for (const std::string& layer : material.layers) {
     std::string name = fs::path(layer.substr(layer.rfind(':') + 1)).stem().string();
@@ -58,7 +64,10 @@ std::string text_of(const NewMaterial& material) {
   return text;
 }
 
-Result<void> write_new_material(const NewMaterial& material) {
+Result<void> write_new_material(const NewMaterial& asked) {
+  NewMaterial material = asked;
+  if (const Result<MapSet> set = open_map_set(asked.scan, asked.is_draft); set && !asked.scan.empty())
+    material.is_albedo_relative = set->is_albedo_relative;
   const fs::path file = fs::absolute(material.file).lexically_normal();
   if (is_there(file)) {
     return Error{ErrorKind::kCannotCreate, "there is such a file", file.string(), "it would be lost",

@@ -15,6 +15,7 @@ struct NewMaterial {
   std::string inherits;             ///< as in a file; empty: nothing
   std::filesystem::path scan;       ///< empty: none
   bool is_draft = false;            ///< maps of a preview will do
+  bool is_albedo_relative = false;  ///< of the scan: a person has to say its scale
   std::vector<std::string> layers;  ///< materials to be laid on it, bottom to top
 };
 

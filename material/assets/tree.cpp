@@ -149,6 +149,7 @@ class TreeBuilder {
         node.size = map.size;
         node.is_tile = map.is_tile;
         node.size_mm = map.size_mm;
+        node.is_size_known = map.is_size_known;
       } else if (!(map.size == node.size)) {
         return unfit(node, key,
                      fmt::format("it has {} x {} pixels, and {} has {} x {}", map.size.width, map.size.height,
@@ -160,6 +161,7 @@ class TreeBuilder {
     if (top.contains("size_mm")) {
       const Json& mm = top.at("size_mm").value;
       node.size_mm = {{mm[0].get<double>(), mm[1].get<double>()}};
+      node.is_size_known = true;
     }
     if (top.contains("is_tile")) node.is_tile = top.at("is_tile").value.get<bool>();
     if (top.contains("pixels")) {
@@ -179,7 +181,10 @@ class TreeBuilder {
       const MaterialNode& layer = tree_.nodes[node.layers[i]];
       if (!layer.has_map) continue;
       node.has_map = true;
-      if (!node.size_mm && layer.size_mm) node.size_mm = layer.size_mm;
+      if (!node.size_mm && layer.size_mm) {
+        node.size_mm = layer.size_mm;
+        node.is_size_known = layer.is_size_known;
+      }
       if (node.size.width != 0 || !node.size_mm || !layer.size_mm) continue;
       const auto pixels = [&](std::size_t axis, int of_layer) {
         return static_cast<int>(
@@ -340,6 +345,7 @@ class TreeBuilder {
                    {"height", node.size.height},
                    {"is_tile", node.is_tile}};
     if (node.size_mm) node.inputs["size_mm"] = *node.size_mm;
+    if (!node.is_size_known) node.inputs["size_known"] = false;
     const ResolvedMaterial& material = node.material;
     for (const auto& [table, values] :
          {std::pair{"surface", &material.surface}, std::pair{"over", &material.over},

@@ -33,6 +33,7 @@ struct MaterialNode {
   std::string id;    ///< product_id() of them
   Size size;
   std::optional<std::array<double, 2>> size_mm = {};
+  bool is_size_known = true;  ///< else it is assumed
   bool is_tile = true;
   bool has_map = false;     ///< some parameter varies
   bool has_relief = false;  ///< its height does

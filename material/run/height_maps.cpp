@@ -83,7 +83,7 @@ Result<void> write_cone_table(MapWork& work) {
       {"columns", "cone_deg from 0 to 90"},
       {"rows", "angle of bent normal and mirror direction from 0 to 90 degrees; in each alpha from 0 to 1"}};
   const WriteOptions options = {.type = SampleType::kHalf,
-                                .attributes = attributes_of(facts, work.surface.mm_per_pixel)};
+                                .attributes = attributes_of(facts, stated_mm(work))};
   if (Result<void> ok = write_image(work.folder / facts.file, planes_of(share), facts.channels, options); !ok)
     return ok;
   work.made.push_back(std::move(facts));

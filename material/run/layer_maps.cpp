@@ -47,7 +47,7 @@ Result<void> write_opacity_mips(MapWork& work, MapFacts& facts) {
   for (const OpacityMip& level : *levels) {
     const WriteOptions options = {.type = SampleType::kHalf,
                                   .compression = work.compression,
-                                  .pitch_mm = pitch_of_level(work.surface, level.map.size())};
+                                  .pitch_mm = pitch_of_level(work, level.map.size())};
     const std::filesystem::path file = folder / fmt::format("opacity_{:02}.exr", level.level);
     if (Result<void> ok = write_image(file, planes_of(level.map), {"opacity"}, options); !ok) return ok;
     listed.push_back({{"level", level.level}, {"scale", level.scale}, {"coverage", level.coverage}});

@@ -156,7 +156,7 @@ Result<void> make_mips(MapWork& work) {
   Json listed = Json::array();
   for (const MipLevel& level : *levels) {
     const std::string number = fmt::format("{:02}", level.level);
-    const PixelPitch pitch_mm = pitch_of_level(work.surface, level.normal.size());
+    const PixelPitch pitch_mm = pitch_of_level(work, level.normal.size());
     const Result<void> normal =
         write_image(folder / ("normal_" + number + ".exr"), planes_of(level.normal), {"X", "Y", "Z"},
                     {.compression = work.compression, .pitch_mm = pitch_mm});

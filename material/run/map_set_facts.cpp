@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/describe/field_json.h"
+#include "solve/session/solved.h"
 
 namespace weft::material {
 
@@ -72,6 +73,7 @@ void describe(Fields& fields, MapSetFacts& f) {
   fields.object({"table", "Where it was taken out of the rims of holes", {}, kUnlessEmpty}, f.table);
   fields.value({"stale", "Why others would have been made then, sentences", {}, kUnlessEmpty},
                f.source.stale);
+  solve::describe_size(fields, f.source, f.document);
 }
 
 Json json_of(const MapSetFacts& facts) {

@@ -30,16 +30,20 @@ report::Picture picture_of(const MapFacts& facts, const Image<float>& reduced) {
 Result<void> write_map(MapWork& work, MapFacts facts, const std::vector<View<const float>>& planes) {
   const WriteOptions options = {.type = facts.unit == "mm" ? SampleType::kFloat : SampleType::kHalf,
                                 .compression = work.compression,
-                                .attributes = attributes_of(facts, work.surface.mm_per_pixel),
-                                .pitch_mm = {work.surface.mm_per_pixel, work.surface.mm_per_pixel}};
+                                .attributes = attributes_of(facts, stated_mm(work)),
+                                .pitch_mm = {stated_mm(work), stated_mm(work)}};
   if (Result<void> ok = write_image(work.folder / facts.file, planes, facts.channels, options); !ok)
     return ok;
   return draw_map(work, std::move(facts), planes);
 }
 
-PixelPitch pitch_of_level(const Surface& surface, Size level) {
-  return {surface.mm_per_pixel * surface.size().width / level.width,
-          surface.mm_per_pixel * surface.size().height / level.height};
+double stated_mm(const MapWork& work) {
+  return work.is_size_known ? work.surface.mm_per_pixel : 0;
+}
+
+PixelPitch pitch_of_level(const MapWork& work, Size level) {
+  const Size size = work.surface.size();
+  return {stated_mm(work) * size.width / level.width, stated_mm(work) * size.height / level.height};
 }
 
 Result<void> draw_map(MapWork& work, MapFacts facts, const std::vector<View<const float>>& planes) {

@@ -21,7 +21,8 @@ namespace weft::material {
 /// A set of maps under way: what each is derived from, what is shared between them, and what was made.
 struct MapWork {
   const Surface& surface;
-  bool has_f0 = false;  ///< the lobe's f0 is measured, and not only its roughness
+  bool has_f0 = false;        ///< the lobe's f0 is measured, and not only its roughness
+  bool is_size_known = true;  ///< else files state none
   std::filesystem::path folder = {};
   Compression compression = Compression::kNone;
   const DeriveOptions& options;
@@ -45,7 +46,9 @@ Result<void> draw_map(MapWork& work, MapFacts facts, const std::vector<View<cons
 /// A map that is one number.
 void write_constant(MapWork& work, MapFacts facts, double value, std::string why);
 
-/// The pitch of a coarser level of this surface.
-PixelPitch pitch_of_level(const Surface& surface, Size level);
+/// Side of a pixel that files state; 0 where it is not known.
+double stated_mm(const MapWork& work);
+/// The same of a coarser level of the surface.
+PixelPitch pitch_of_level(const MapWork& work, Size level);
 
 }  // namespace weft::material

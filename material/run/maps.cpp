@@ -29,6 +29,7 @@
 #include "report/downsampler.h"
 #include "report/preview.h"
 #include "solve/files/pictures.h"
+#include "solve/session/solved.h"
 
 namespace weft::material {
 namespace {
@@ -56,6 +57,10 @@ Result<std::optional<OpacityFacts>> find_opacity(const MapsOptions& options, con
     if (marked.facts.holes == 0) return std::optional<OpacityFacts>();
     surface.opacity = std::move(marked.map);
     return std::optional(marked.facts);
+  }
+  if (solve::photographed_pixel(session)) {
+    return Error{ErrorKind::kUsage, "the light below is that of a rig", "--bare",
+                 session.folder.string() + " is a solve of photographs under distant lights", "leave it out"};
   }
   const Result<Calibration> calibration =
       read_calibration(options.calibration.empty() ? session.calibration_folder() : options.calibration);
@@ -132,6 +137,13 @@ bool changes_colour(const Recipe& recipe) {
   return std::ranges::find(recipe.steps, "color", &RecipeStep::name) != recipe.steps.end();
 }
 
+// A step that says how large a pixel is.
+bool says_scale(const Recipe& recipe) {
+  return std::ranges::any_of(recipe.steps, [](const RecipeStep& step) {
+    return step.name == "scale" && step.options.value("mm_per_pixel", 0.0) > 0;
+  });
+}
+
 // On the grid that flattening found, which later steps changed.
 Result<void> write_removed(MapWork& work, const FinishingFacts& finished) {
   if (finished.removed.empty()) return {};
@@ -177,13 +189,14 @@ struct CheckedMaps {
 
 // Whether the maps are those of a cloth and fit to be put on a material. Those that did not pass have a
 // picture of where.
-Result<CheckedMaps> check_maps(const MapWork& work, bool has_measured_black) {
+Result<CheckedMaps> check_maps(const MapWork& work, const Session& session) {
   MapsToValidate maps;
   maps.surface = &work.surface;
   maps.openness = work.openness.empty() ? View<const float>() : View<const float>(work.openness.plane());
   // The slopes of a tile's height are those of its waves, which differences of pixels are not.
   if (!work.height_mm.empty() && !work.surface.is_tile) maps.height_mm = work.height_mm.plane();
-  maps.has_measured_black = has_measured_black;
+  maps.has_measured_black = session.dark() != nullptr;
+  maps.is_of_rig = !solve::photographed_pixel(session);
   maps.level = work.level;
   maps.is_height_of_slopes = true;
   maps.is_colour_changed = work.is_colour_changed;
@@ -225,6 +238,7 @@ MapSetFacts facts_of(const Product& product, const RectifyFacts& rectified, cons
                        .derive = options.derive,
                        .checks = std::move(checked.checks),
                        .verdicts = finished.verdicts};
+  facts.source.is_size_known = work.is_size_known;
   for (MapFacts& map : facts.maps) map.document = json_of(map);
   for (const std::vector<Verdict>& more : {work.verdicts, checked.verdicts})
     facts.verdicts.insert(facts.verdicts.end(), more.begin(), more.end());
@@ -238,7 +252,10 @@ Result<MapSetFacts> asked_for_again(const Product& product, const RectifyReport&
   std::error_code ignored;  // of an archive that cannot be written
   fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);
   Result<MapSetFacts> facts = read_fields<MapSetFacts>(document, file.string());
-  if (facts) facts->source = rectified.facts.source;
+  if (!facts) return facts;
+  const bool is_size_known = facts->source.is_size_known;
+  facts->source = rectified.facts.source;
+  facts->source.is_size_known = is_size_known;
   return facts;
 }
 
@@ -289,6 +306,7 @@ Result<MapSetFacts> make_set(const MapsOptions& options, const Session& session,
   Result<RectifiedSurface> read = read_surface(rectified.folder, rectified.facts.mm_per_pixel);
   if (!read) return std::move(read).error();
   Surface& surface = read->surface;
+  read->is_size_known = rectified.facts.source.is_size_known || says_scale(options.recipe);
   if (Result<void> begun = begin(aside, bytes_of_maps(surface.size())); !begun)
     return std::move(begun).error();
   const Result<std::optional<OpacityFacts>> opacity =
@@ -310,6 +328,7 @@ Result<MapSetFacts> make_set(const MapsOptions& options, const Session& session,
   }
   MapWork work = {.surface = surface,
                   .has_f0 = read->has_f0,
+                  .is_size_known = read->is_size_known,
                   .folder = aside.path(),
                   .compression = options.compression,
                   .options = options.derive,
@@ -323,7 +342,7 @@ Result<MapSetFacts> make_set(const MapsOptions& options, const Session& session,
   if (Result<void> ok = derive(options.maps, work); !ok) return std::move(ok).error();
   // A layer of detail has no reflectance that could be checked.
   Result<CheckedMaps> checked = CheckedMaps();
-  if (!finished->is_detail) checked = check_maps(work, session.dark() != nullptr);
+  if (!finished->is_detail) checked = check_maps(work, session);
   if (!checked) return std::move(checked).error();
   MapSetFacts facts = facts_of(product, rectified.facts, options, *finished, work, std::move(*checked));
   facts.table = *table;
@@ -347,7 +366,7 @@ Result<RectifyReport> rectified_maps(const MapsOptions& options, const JobContex
 
 Result<MapsReport> make_maps(const MapsOptions& wanted, const JobContext& context) {
   if (Result<void> ok = check(wanted); !ok) return std::move(ok).error();
-  const Result<Session> session = read_session(wanted.session);
+  const Result<Session> session = solve::read_solved(wanted.session);
   if (!session) return session.error();
   MapsOptions options = wanted;
   if (options.derive.cloth.empty()) options.derive.cloth = cloth_kind_of(*session);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -20,7 +21,7 @@
 #include "core/solve/solve.h"
 #include "core/solve/solve_record.h"
 #include "material/table_grid.h"
-#include "solve/session/current.h"
+#include "solve/session/solved.h"
 
 namespace weft::material {
 namespace {
@@ -30,6 +31,8 @@ namespace fs = std::filesystem;
 constexpr int kRectifiedVersion = 3;  // raised whenever the bytes of a map may change
 constexpr const char* kFilter =
     "cubic convolution, a = -1/2 (Keys 1981), stretched to the grid where it is coarser than the frame";
+constexpr const char* kNoFilter = "none: the grid is that of the photographs";
+constexpr double kFarAbove_mm = 1000;  // of photographs, whose lens nobody knows
 
 Result<CameraModel> camera_of_maps(const CameraModel& camera, Size maps, const fs::path& folder) {
   const auto reduces = [&](int factor) {
@@ -44,10 +47,18 @@ Result<CameraModel> camera_of_maps(const CameraModel& camera, Size maps, const f
                "name the calibration that the session was taken with"};
 }
 
-// Everything that one map after another is made with.
-struct Rectification {
+// What sees the maps of a solve, and the grid that they go to.
+struct Sight {
+  std::string calibration;  // its id
   CameraModel camera;
   TableGrid grid;
+  bool is_own_grid = false;   // each pixel of the grid is one of the maps
+  PixelPitch stated_mm = {};  // in files; none where it is assumed
+};
+
+// Everything that one map after another is made with.
+struct Rectification {
+  Sight sight;
   Image<std::uint16_t> status;
   fs::path to;
   const RectifyOptions& options;
@@ -57,7 +68,7 @@ struct Rectification {
 // Calls make(first row, rows) band by band.
 template <typename Make>
 Result<void> by_bands(const Rectification& r, const Make& make) {
-  const int height = r.grid.size.height;
+  const int height = r.sight.grid.size.height;
   for (int y = 0; y < height; y += r.options.band_rows) {
     if (r.context.stop.stop_requested()) return interrupted();
     if (const Result<void> made = make(y, std::min(r.options.band_rows, height - y)); !made) return made;
@@ -76,27 +87,37 @@ void turn_yarns(double turn_deg, View<float> yarn_deg) {
   }
 }
 
+void copy_rows(std::span<const View<const float>> map, int y, std::span<const View<float>> out) {
+  for (std::size_t p = 0; p < out.size(); ++p) {
+    for (int j = 0; j < out[p].height(); ++j) std::copy_n(map[p].row(y + j), out[p].width(), out[p].row(j));
+  }
+}
+
 Result<void> rectify_map(const Rectification& r, const std::string& name, MapKind kind, SampleType type,
                          const Result<LoadedImage>& map) {
   if (!map) return map.error();
+  const Sight& s = r.sight;
+  const Size size = s.grid.size;
   const auto yarn_channel = std::ranges::find(map->info.channels, "yarn_deg");
   const int yarn = yarn_channel == map->info.channels.end()
                        ? -1
                        : static_cast<int>(yarn_channel - map->info.channels.begin());
   std::vector<View<const float>> planes;
   for (int p = 0; p < map->planes.planes(); ++p) planes.push_back(map->planes.plane(p));
-  Result<ImageWriter> writer = ImageWriter::open(r.to / name, r.grid.size, map->info.channels,
-                                                 {.type = type,
-                                                  .compression = r.options.compression,
-                                                  .pitch_mm = {r.grid.mm_per_pixel, r.grid.mm_per_pixel}});
+  Result<ImageWriter> writer =
+      ImageWriter::open(r.to / name, size, map->info.channels,
+                        {.type = type, .compression = r.options.compression, .pitch_mm = s.stated_mm});
   if (!writer) return std::move(writer).error();
-  Image<float> band({r.grid.size.width, r.options.band_rows}, static_cast<int>(planes.size()));
+  Image<float> band({size.width, r.options.band_rows}, static_cast<int>(planes.size()));
   const Result<void> done = by_bands(r, [&](int y, int rows) {
     std::vector<View<float>> out;
-    for (int p = 0; p < band.planes(); ++p)
-      out.push_back(band.plane(p).crop({0, 0, r.grid.size.width, rows}));
-    rectify_rows(r.camera, r.grid, kind, planes, r.status.plane(), y, r.context.threads, out);
-    if (yarn >= 0) turn_yarns(r.grid.turn_deg, out[static_cast<std::size_t>(yarn)]);
+    for (int p = 0; p < band.planes(); ++p) out.push_back(band.plane(p).crop({0, 0, size.width, rows}));
+    if (s.is_own_grid) {
+      copy_rows(planes, y, out);
+    } else {
+      rectify_rows(s.camera, s.grid, kind, planes, r.status.plane(), y, r.context.threads, out);
+    }
+    if (yarn >= 0) turn_yarns(s.grid.turn_deg, out[static_cast<std::size_t>(yarn)]);
     return writer->write_rows(std::vector<View<const float>>(out.begin(), out.end()));
   });
   if (!done) return done;
@@ -104,15 +125,17 @@ Result<void> rectify_map(const Rectification& r, const std::string& name, MapKin
 }
 
 Result<void> rectify_status(const Rectification& r, std::int64_t& solved) {
-  Result<ImageWriter> writer = ImageWriter::open(
-      r.to / "status.png", r.grid.size, {"Y"},
-      {.type = SampleType::kUint16, .pitch_mm = {r.grid.mm_per_pixel, r.grid.mm_per_pixel}});
+  const Sight& s = r.sight;
+  const Size size = s.grid.size;
+  Result<ImageWriter> writer = ImageWriter::open(r.to / "status.png", size, {"Y"},
+                                                 {.type = SampleType::kUint16, .pitch_mm = s.stated_mm});
   if (!writer) return std::move(writer).error();
-  Image<std::uint16_t> band({r.grid.size.width, r.options.band_rows});
+  Image<std::uint16_t> band({size.width, r.options.band_rows});
   const Result<void> done = by_bands(r, [&](int y, int rows) {
-    const View<std::uint16_t> out = band.plane().crop({0, 0, r.grid.size.width, rows});
-    rectify_status_rows(r.camera, r.grid, r.status.plane(), y, r.context.threads, out);
+    const View<std::uint16_t> out = band.plane().crop({0, 0, size.width, rows});
+    if (!s.is_own_grid) rectify_status_rows(s.camera, s.grid, r.status.plane(), y, r.context.threads, out);
     for (int j = 0; j < rows; ++j) {
+      if (s.is_own_grid) std::copy_n(r.status.plane().row(y + j), out.width(), out.row(j));
       solved += std::count_if(out.row(j), out.row(j) + out.width(),
                               [](auto bits) { return (bits & kNoSolution) == 0; });
     }
@@ -141,13 +164,13 @@ Result<void> rectify_maps(const Rectification& r, const SolveMaps& maps, const f
   return {};
 }
 
-RectifyFacts facts_of(const std::string& id, const solve::SourceFacts& source, const Calibration& calibration,
-                      const Rectification& r, std::int64_t solved) {
-  const TableGrid& g = r.grid;
+RectifyFacts facts_of(const std::string& id, const solve::SourceFacts& source, const Rectification& r,
+                      std::int64_t solved) {
+  const TableGrid& g = r.sight.grid;
   const Vec3 corner = g.point_mm(0, 0);
   return {.id = id,
           .source = source,
-          .calibration = calibration.id,
+          .calibration = r.sight.calibration,
           .size = g.size,
           .mm_per_pixel = g.mm_per_pixel,
           .height_mm = g.height_mm,
@@ -155,7 +178,7 @@ RectifyFacts facts_of(const std::string& id, const solve::SourceFacts& source, c
           .centre_mm = {g.centre_x_mm, g.centre_y_mm},
           .first_pixel_mm = {corner.x, corner.y},
           .normals = "in the grid's axes: x along its rows, y up its columns, z to the camera",
-          .filter = kFilter,
+          .filter = r.sight.is_own_grid ? kNoFilter : kFilter,
           .compression = r.options.compression,
           .pixels = solved,
           .document = {}};
@@ -166,6 +189,50 @@ Result<Calibration> calibration_with_camera(const fs::path& folder) {
   if (!calibration || calibration->camera) return calibration;
   return Error{ErrorKind::kBadData, "calibration has no camera", folder.string(), "there is no camera.json",
                "calibrate the camera with weft calibrate camera"};
+}
+
+solve::SourceFacts source_today(const Session& session, const solve::SessionSolves& solves,
+                                const solve::ChoosableSolve& solve) {
+  solve::SourceFacts source = solve::source_of(solve, why_stale(solves, solve.id));
+  if (const auto pixel = solve::photographed_pixel(session)) {
+    source.pixel_mm = pixel->mm;
+    source.is_size_known = pixel->is_known;
+  }
+  return source;
+}
+
+Result<Sight> sight_of_rig(const Session& session, const RectifyOptions& options, Size maps,
+                           const fs::path& solve) {
+  const Result<Calibration> calibration = calibration_with_camera(
+      options.calibration.empty() ? session.calibration_folder() : options.calibration);
+  if (!calibration) return calibration.error();
+  const CameraModel seen = seen_from(session.pose, session.cloth_height_mm, *calibration->camera);
+  Result<CameraModel> camera = camera_of_maps(seen, maps, solve);
+  if (!camera) return std::move(camera).error();
+  const Result<TableGrid> grid =
+      table_grid(*camera, {options.mm_per_pixel.value_or(0), session.cloth_height_mm, options.turn_deg});
+  if (!grid) return grid.error();
+  return Sight{calibration->id, std::move(*camera), *grid, false, {grid->mm_per_pixel, grid->mm_per_pixel}};
+}
+
+// Photographs without a calibration are taken as seen from straight above, by a lens without distortion.
+Result<Sight> sight_of_photographs(const solve::SourceFacts& source, const RectifyOptions& options,
+                                   Size maps) {
+  if (!options.calibration.empty()) {
+    return Error{ErrorKind::kUsage, "photographs under distant lights have no camera to calibrate",
+                 "--calibration", "they are taken as seen from straight above", "leave it out"};
+  }
+  const double mm = *source.pixel_mm * (source.is_draft ? 2 : 1);
+  Sight sight = {"", overhead_camera(maps, kFarAbove_mm, mm), {maps, mm}, true, {}};
+  if (options.turn_deg != 0 || options.mm_per_pixel.value_or(mm) != mm) {
+    const Result<TableGrid> grid =
+        table_grid(sight.camera, {options.mm_per_pixel.value_or(mm), 0, options.turn_deg});
+    if (!grid) return grid.error();
+    sight.grid = *grid;
+    sight.is_own_grid = false;
+  }
+  if (source.is_size_known) sight.stated_mm = {sight.grid.mm_per_pixel, sight.grid.mm_per_pixel};
+  return sight;
 }
 
 // Room that the maps take at most: normal 12, sigma 32, albedo 6, roughness and specular 10, status 2 bytes a
@@ -208,6 +275,7 @@ void describe(Fields& fields, RectifyFacts& f) {
   fields.value({"draft", "The solve is a preview"}, f.source.is_draft);
   fields.value({"stale", "Why another would have been made then, sentences", {}, kUnlessEmpty},
                f.source.stale);
+  solve::describe_size(fields, f.source, f.document);
 }
 
 Json json_of(const RectifyFacts& facts) {
@@ -218,31 +286,27 @@ Json json_of(const RectifyFacts& facts) {
 
 Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobContext& context) {
   if (const Result<void> ok = check_fields(options); !ok) return ok.error();
-  const Result<Session> session = read_session(options.session);
+  const Result<Session> session = solve::read_solved(options.session);
   if (!session) return session.error();
-  const Result<Calibration> calibration = calibration_with_camera(
-      options.calibration.empty() ? session->calibration_folder() : options.calibration);
-  if (!calibration) return calibration.error();
   const solve::SessionSolves solves = solve::solves_of(*session);
   const Result<solve::ChoosableSolve> solve = solve::solve_for_maps(solves, options.solve, options.is_draft);
   if (!solve) return solve.error();
-  const solve::SourceFacts source = solve::source_of(*solve, why_stale(solves, solve->id));
+  const solve::SourceFacts source = source_today(*session, solves, *solve);
   const Result<SolveMaps> maps = SolveMaps::open(solve->folder);
   if (!maps) return maps.error();
-  const CameraModel seen = seen_from(session->pose, session->cloth_height_mm, *calibration->camera);
-  const Result<CameraModel> camera = camera_of_maps(seen, maps->size(), solve->folder);
-  if (!camera) return camera.error();
-  const Result<TableGrid> grid =
-      table_grid(*camera, {options.mm_per_pixel.value_or(0), session->cloth_height_mm, options.turn_deg});
-  if (!grid) return grid.error();
+  Result<Sight> sight = source.pixel_mm ? sight_of_photographs(source, options, maps->size())
+                                        : sight_of_rig(*session, options, maps->size(), solve->folder);
+  if (!sight) return std::move(sight).error();
+  const TableGrid grid = sight->grid;
 
-  const Json inputs = {{"version", kRectifiedVersion},
-                       {"solve", solve->id},
-                       {"calibration", calibration->id},
-                       {"mm_per_pixel", grid->mm_per_pixel},
-                       {"height_mm", grid->height_mm},
-                       {"turn_deg", grid->turn_deg},
-                       {"compression", name_of(options.compression)}};
+  Json inputs = {{"version", kRectifiedVersion},
+                 {"solve", solve->id},
+                 {"calibration", sight->calibration},
+                 {"mm_per_pixel", grid.mm_per_pixel},
+                 {"height_mm", grid.height_mm},
+                 {"turn_deg", grid.turn_deg},
+                 {"compression", name_of(options.compression)}};
+  if (source.pixel_mm) inputs["photographed"] = {*source.pixel_mm, source.is_size_known};
   const Product product =
       product_of(kRectifiedProduct, inputs, session->folder / "rectified", options.output);
   Result<std::optional<Json>> finished = find_finished(product);
@@ -258,12 +322,12 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   Result<Image<std::uint16_t>> status = maps->status();
   if (!status) return std::move(status).error();
   PartialFolder partial(product.folder);
-  if (const Result<void> begun = begin(partial, bytes_of_rectified(grid->size)); !begun) return begun.error();
-  const Rectification r = {*camera, *grid, std::move(*status), partial.path(), options, context};
+  if (const Result<void> begun = begin(partial, bytes_of_rectified(grid.size)); !begun) return begun.error();
+  const Rectification r = {std::move(*sight), std::move(*status), partial.path(), options, context};
   std::int64_t solved = 0;
   if (const Result<void> ok = rectify_status(r, solved); !ok) return ok.error();
   if (const Result<void> ok = rectify_maps(r, *maps, solve->folder); !ok) return ok.error();
-  RectifyFacts facts = facts_of(product.id, source, *calibration, r, solved);
+  RectifyFacts facts = facts_of(product.id, source, r, solved);
   const Result<void> written = write_json(partial.path() / kRectifiedProduct.document, json_of(facts));
   if (!written) return written.error();
   if (const Result<void> ok = partial.publish(); !ok) return ok.error();

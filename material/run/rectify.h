@@ -22,7 +22,7 @@ inline constexpr ProductKind kRectifiedProduct = {"weft.rectified", "rectify.jso
                                                   "rectify a solve first with weft rectify"};
 
 struct RectifyOptions {
-  std::filesystem::path session;
+  std::filesystem::path session;            ///< or the folder of a solve of photographs
   std::string solve;                        ///< id of the solve; empty: the session's current one
   bool is_draft = false;                    ///< a preview will do
   std::filesystem::path calibration;        ///< empty: the session's own

@@ -35,6 +35,9 @@ struct SessionSet {
 /// The complete sets of a session but its previews, the oldest first. `of_previews`: those too.
 std::vector<SessionSet> sets_of(const solve::SessionSolves& solves, bool of_previews = false);
 
+/// Which of these maps a set has not.
+std::vector<std::string> lacking(const MapSetFacts& facts, const std::vector<std::string>& wanted);
+
 /// Which of them exports and materials are made from: of those of the current solve, else of all, the newest
 /// that has the maps `wanted`, else the newest. Maps of a preview come last. Null where there is none.
 const SessionSet* set_to_use(const solve::SessionSolves& solves, const std::vector<SessionSet>& sets,
@@ -43,7 +46,7 @@ const SessionSet* set_to_use(const solve::SessionSolves& solves, const std::vect
 /// What to do where there are maps of a preview alone: "make better ones with weft maps SESSION".
 std::string how_to_make_better(const solve::SessionSolves& solves);
 
-/// "from the standard solve 0123456789abcdef", then why that is stale.
+/// "from the standard solve 0123456789abcdef", then why that is stale, and that its size is not known.
 std::vector<std::string> source_lines(const solve::SourceFacts& source);
 /// What a list of scans says of one; empty where it does not.
 solve::SourceFacts source_in(const Json& scan);

@@ -184,10 +184,11 @@ Result<void> write_surface(const fs::path& folder, const RectifiedSurface& recti
                          const std::vector<View<const float>>& planes,
                          const std::vector<std::string>& channels) {
     const MapFacts facts = {.unit = unit, .source = MapSource::kMeasured};
+    const double mm = rectified.is_size_known ? surface.mm_per_pixel : 0;
     const WriteOptions options = {.type = type,
                                   .compression = compression,
-                                  .attributes = attributes_of(facts, surface.mm_per_pixel),
-                                  .pitch_mm = {surface.mm_per_pixel, surface.mm_per_pixel}};
+                                  .attributes = attributes_of(facts, mm),
+                                  .pitch_mm = {mm, mm}};
     return planes.empty() ? Result<void>() : write_image(folder / name, planes, channels, options);
   };
   using enum SampleType;

@@ -21,6 +21,7 @@ struct RectifiedSurface {
   Surface surface;
   /// Its lobe has a measured f0. One of an albedo without a scale has none: there it is kTypedF0.
   bool has_f0 = false;
+  bool is_size_known = true;  ///< else files state none
 };
 /// Errors of read_image(); kBadData where sizes differ or a value is not finite.
 Result<RectifiedSurface> read_surface(const std::filesystem::path& rectified, double mm_per_pixel);

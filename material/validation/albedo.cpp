@@ -62,8 +62,10 @@ const char* remedy_of_brightness(const Checked& checked) {
   if (checked.maps.is_colour_changed) return "take a smaller exposure or gain in the step color";
   return has_better_level(checked)
              ? "solve with --quality reference, which takes light between yarns out of the albedo"
-             : "check the white patch of the calibration and its reflectance; leave it if the cloth is so "
-               "white";
+         : checked.maps.is_of_rig
+             ? "check the white patch of the calibration and its reflectance; leave it if the cloth is so "
+               "white"
+             : "its scale is not known: give it another by the step color of a recipe";
 }
 
 // Where the albedo, and its logarithm with it, says something of the light.
@@ -159,7 +161,9 @@ Finding saturation(const Checked& checked) {
        fmt::format("in {:.1f} percent of the cloth one channel is over {:g} times another, {:.0f} times at "
                    "most",
                    100 * share, limit, most),
-       "leave it if the cloth is as pure as that, else calibrate colour again with weft calibrate color"},
+       std::string("leave it if the cloth is as pure as that, else ") +
+           (checked.maps.is_of_rig ? "calibrate colour again with weft calibrate color"
+                                   : "look at the colours of the photographs")},
       most, limit, std::move(found.where));
 }
 
@@ -244,13 +248,13 @@ Finding light_by_normals(const Checked& checked) {
   const std::string numbers =
       fmt::format("albedo correlates by {:+.3f} and {:+.3f} with the normal's x and y", x, y);
   if (worst <= limit) return passed("LIGHT_IN_ALBEDO_NORMALS", numbers, worst, limit);
-  return failed(
-      Severity::kWarning,
-      {"LIGHT_IN_ALBEDO_NORMALS", numbers + ": one side of the yarns is brighter",
-       has_better_level(checked)
-           ? "solve with --quality reference; if it stays, check the lights with weft calibrate check"
-           : "check the lights with weft calibrate check; leave it if they are where they should be"},
-      worst, limit);
+  const std::string with_what = checked.maps.is_of_rig ? " with weft calibrate check" : "";
+  return failed(Severity::kWarning,
+                {"LIGHT_IN_ALBEDO_NORMALS", numbers + ": one side of the yarns is brighter",
+                 has_better_level(checked)
+                     ? "solve with --quality reference; if it stays, check the lights" + with_what
+                     : "check the lights" + with_what + "; leave it if they are where they should be"},
+                worst, limit);
 }
 
 }  // namespace weft::material

@@ -47,6 +47,7 @@ struct MapsToValidate {
   bool has_measured_black = false;  ///< the session has a dark frame: dark albedos may be believed
   /// The solve's level, "standard"; empty: nobody knows. No remedy names it or one below.
   std::string level = {};
+  bool is_of_rig = true;             ///< else no remedy names its calibration
   bool is_height_of_slopes = false;  ///< integrated from this surface's slopes, so that its scale is theirs
   bool is_colour_changed = false;    ///< by a person, in a step that can be taken back
 };

@@ -12,6 +12,7 @@
 #include "core/base/product.h"
 #include "core/solve/solve.h"
 #include "solve/session/left_out_shots.h"
+#include "solve/session/solved.h"
 
 namespace weft::solve {
 namespace {
@@ -160,10 +161,6 @@ std::optional<std::size_t> chosen_by_person(const Session& session, const std::v
   return stands ? std::optional(static_cast<std::size_t>(found - all.begin())) : std::nullopt;
 }
 
-std::string command_to_solve(const SessionSolves& solves, const std::string& level) {
-  return fmt::format("weft solve {} --quality {}", solves.session.string(), level);
-}
-
 Error nothing_to_make_maps_of(ErrorKind kind, const SessionSolves& solves, std::string why,
                               std::string remedy) {
   return {kind, "there is no solve to make maps of", solves.session.string(), std::move(why),
@@ -215,7 +212,9 @@ const ChoosableSolve* SessionSolves::current_one() const {
 }
 
 SessionSolves solves_of(const Session& session) {
-  SessionSolves solves = {.session = session.folder, .all = choosable(session, of_today(session))};
+  SessionSolves solves = {.session = session.folder,
+                          .is_of_photographs = photographed_pixel(session).has_value(),
+                          .all = choosable(session, of_today(session))};
   for (std::size_t i = 0; i < solves.all.size(); ++i) {
     if (!solves.best || order_of(solves.all[i]) >= order_of(solves.all[*solves.best])) solves.best = i;
   }
@@ -223,6 +222,11 @@ SessionSolves solves_of(const Session& session) {
   solves.is_chosen = solves.current.has_value();
   if (!solves.current) solves.current = solves.best;
   return solves;
+}
+
+std::string command_to_solve(const SessionSolves& solves, const std::string& level) {
+  return fmt::format("weft solve {} --quality {}",
+                     solves.is_of_photographs ? "--photos FOLDER" : solves.session.string(), level);
 }
 
 std::string current_solve(const Session& session) {
@@ -282,7 +286,7 @@ Result<ChoosableSolve> solve_for_maps(const SessionSolves& solves, const std::st
 }
 
 SourceFacts source_of(const ChoosableSolve& solve, std::vector<std::string> stale) {
-  return {solve.id, solve.level, solve.is_preview(), std::move(stale)};
+  return {.solve = solve.id, .level = solve.level, .is_draft = solve.is_preview(), .stale = std::move(stale)};
 }
 
 }  // namespace weft::solve

@@ -38,6 +38,7 @@ std::string words_of(const ChoosableSolve& solve);
 /// The solves of a session.
 struct SessionSolves {
   std::filesystem::path session;
+  bool is_of_photographs = false;   ///< under distant lights: there is one, and its folder is `session`
   std::vector<ChoosableSolve> all;  ///< the oldest first
   /// Indices of `all`; empty where there is no solve. `best`: of those of today's photographs the highest
   /// level, of two alike the newest; one that waits stands above previews alone. `current`: what a person
@@ -49,6 +50,8 @@ struct SessionSolves {
   const ChoosableSolve* current_one() const;                ///< null: there is none
 };
 SessionSolves solves_of(const Session& session);
+/// How a person makes one at this level: "weft solve SESSION --quality standard".
+std::string command_to_solve(const SessionSolves& solves, const std::string& level);
 
 /// The id of the current one; empty where there is none.
 std::string current_solve(const Session& session);
@@ -70,6 +73,9 @@ struct SourceFacts {
   std::string level = {};               ///< or the method of comparison; empty: nobody knows
   bool is_draft = false;                ///< it is a preview
   std::vector<std::string> stale = {};  ///< why another would have been made then, a sentence each
+  /// Side of a pixel of photographs that was taken, mm. None: a calibrated camera took them.
+  std::optional<double> pixel_mm = {};
+  bool is_size_known = true;  ///< else `pixel_mm` is assumed, and with it all millimetres
 };
 SourceFacts source_of(const ChoosableSolve& solve, std::vector<std::string> stale);
 

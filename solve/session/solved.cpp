@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/session/solved.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "core/base/files.h"
+#include "core/base/product.h"
+#include "core/solve/solve.h"
+
+namespace weft::solve {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPhotographs = "photographs";
+constexpr const char* kPixel = "mm_per_pixel";
+
+// ./NAME-solve/<id> is called NAME.
+std::string name_of_solve(const fs::path& folder, const std::string& id) {
+  constexpr std::string_view kEnding = "-solve";
+  const fs::path path = absolute_folder(folder);
+  const std::string parent = path.parent_path().filename().string();
+  if (path.filename() == id && parent.ends_with(kEnding))
+    return parent.substr(0, parent.size() - kEnding.size());
+  return path.filename().string();
+}
+
+// The photographs that a solve.json names; none of a session's.
+std::vector<Shot> photographs_in(const SolveFacts& facts) {
+  std::vector<Shot> shots;
+  if (!facts.input) return shots;
+  for (const DistantPhotograph& each : facts.input->photographs) {
+    const int index = static_cast<int>(shots.size());
+    Shot shot;
+    shot.index = index;
+    shot.led = index + 1;
+    shot.file = each.file;
+    shot.sha256 = each.sha256;
+    shot.document = Json::object();
+    shots.push_back(std::move(shot));
+  }
+  return shots;
+}
+
+}  // namespace
+
+bool is_solved(const fs::path& folder) {
+  return is_there(folder / "session.json") || is_there(folder / kSolveProduct.document);
+}
+
+Result<Session> read_solved(const fs::path& folder) {
+  const fs::path file = folder / kSolveProduct.document;
+  if (is_there(folder / "session.json") || !is_there(file)) return read_session(folder);
+  const Result<Json> document = read_json(file, kSolveProduct.schema, 1);
+  if (!document) return document.error();
+  const Result<SolveFacts> facts = solve_facts_from_json(*document, file.string());
+  if (!facts) return facts.error();
+  Session session;
+  session.folder = folder;
+  session.fabric = name_of_solve(folder, facts->id);
+  session.shots = photographs_in(*facts);
+  if (session.shots.empty()) {
+    return Error{ErrorKind::kUsage, "this is one solve of a session", folder.string(),
+                 "maps are made of the session that it lies in",
+                 fmt::format("name the session, and of its solves this one with --solve {}", facts->id)};
+  }
+  session.document = {{kPhotographs, Json::object()}};
+  if (const auto mm = document->find(kPixel); mm != document->end() && mm->is_number())
+    session.document[kPhotographs][kPixel] = *mm;
+  return session;
+}
+
+std::optional<PhotographedPixel> photographed_pixel(const Session& session) {
+  const auto photographs = session.document.find(kPhotographs);
+  if (photographs == session.document.end()) return {};
+  if (!photographs->contains(kPixel)) return PhotographedPixel{kAssumedMmPerPixel, false};
+  return PhotographedPixel{(*photographs)[kPixel].get<double>(), true};
+}
+
+Result<void> keep_pixel(const fs::path& folder, std::optional<double>& mm_per_pixel) {
+  if (!mm_per_pixel) return {};
+  const Result<Session> session = read_solved(folder);
+  if (!session) return session.error();
+  const std::optional<PhotographedPixel> pixel = photographed_pixel(*session);
+  if (!pixel) return {};
+  const double said = *std::exchange(mm_per_pixel, std::nullopt);
+  if (pixel->is_known && pixel->mm == said) return {};
+  const fs::path file = folder / kSolveProduct.document;
+  Result<Json> document = read_json(file, kSolveProduct.schema, 1);
+  if (!document) return std::move(document).error();
+  (*document)[kPixel] = said;
+  return write_json(file, *document);
+}
+
+std::string size_words(const SourceFacts& source) {
+  if (source.is_size_known) return "";
+  return fmt::format("the size is not known: {:.4g} mm a pixel is assumed; --mm-per-pixel says it",
+                     source.pixel_mm.value_or(kAssumedMmPerPixel));
+}
+
+std::string why_other_size(const Session& session, const SourceFacts& source) {
+  const std::optional<PhotographedPixel> pixel = photographed_pixel(session);
+  if (!pixel || !pixel->is_known || (source.pixel_mm == pixel->mm && source.is_size_known)) return "";
+  return fmt::format("a pixel of the photographs is {:.4g} mm, and they were made with {:.4g} mm", pixel->mm,
+                     source.pixel_mm.value_or(kAssumedMmPerPixel));
+}
+
+void describe_size(Fields& fields, SourceFacts& source, const Json& document) {
+  const bool is_said = document.is_object() && document.contains("size_known");
+  fields.value({"photograph_mm_per_pixel", "Of photographs without a calibrated camera: theirs", kAboveZero},
+               source.pixel_mm);
+  fields.only_if(is_said || !source.is_size_known, [&] {
+    fields.value({"size_known", "False: nobody said it, and millimetres are assumed"}, source.is_size_known);
+  });
+}
+
+}  // namespace weft::solve
