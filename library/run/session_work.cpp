@@ -71,7 +71,7 @@ Result<solve::SolveReport> solve_lean(const solve::SessionOptions& input, solve:
   if (*finished) {
     Result<SolveFacts> facts = solve_facts_from_json(**finished, target.folder.string());
     if (!facts) return std::move(facts).error();
-    return solve::SolveReport{target.folder, true, std::move(*facts), {}, {}, {}};
+    return solve::SolveReport{target.folder, true, std::move(*facts), {}, {}};
   }
   PartialFolder partial(target.folder);
   options.output = partial.path() / "solve";

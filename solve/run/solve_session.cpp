@@ -30,6 +30,7 @@
 #include "solve/report/reflectance_report.h"
 #include "solve/report/solve_report.h"
 #include "solve/run/facts_json.h"
+#include "solve/session/solved.h"
 #include "solve/session/left_out_shots.h"
 
 namespace weft::solve {
@@ -495,7 +496,11 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   photos.clipped = method->keeps_clipped ? Clipped::kKeep : Clipped::kMark;
   const Result<SolvePlan> plan = plan_photos(photos);
   if (!plan) return plan.error();
-  return solve(*method, *plan, options, context);
+  Result<SolveReport> report = solve(*method, *plan, options, context);
+  if (!report || !(photos.mm_per_pixel > 0)) return report;
+  std::optional<double> mm_per_pixel = photos.mm_per_pixel;
+  if (Result<void> kept = keep_pixel(report->folder, mm_per_pixel); !kept) return std::move(kept).error();
+  return report;
 }
 
 Result<SolveReport> solve_loaded(Photographs photographs, const SolveOptions& options,

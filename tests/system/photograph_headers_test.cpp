@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -192,6 +194,75 @@ TEST_F(PhotographHeaders, LookSaysWhatAFileMeans) {
   ASSERT_EQ(map.exit_code, 0) << map.error;
   EXPECT_EQ(map.json()["pictures"][0]["holds"], (std::vector<std::string>{"normal.x", "normal.y", "normal.z"}));
   EXPECT_FALSE(map.json()["pictures"][0]["unfit"].is_null());
+}
+
+// Waves under six lamps 120 to 160 mm from the middle of 160 x 120 mm, and a list of their places.
+struct NearSample {
+  static constexpr double kMmPerPixel = 1;
+  Size size = {160, 120};
+  std::vector<Vec3> lamps = {{90, 10, 90},  {30, 85, 95},   {-70, 60, 90},
+                             {-85, -40, 100}, {-10, -90, 85}, {65, -60, 110}};
+
+  static Vec3 normal_at(int x, int y) {
+    return normalized({-0.3 * std::cos(x / 7.0 + y / 11.0), 0.25 * std::sin(y / 6.0 - x / 13.0), 1});
+  }
+  void write(const fs::path& folder) const {
+    fs::create_directories(folder);
+    std::string list = std::to_string(lamps.size()) + "\n";
+    Image<float> truth(size, 3);
+    for (std::size_t k = 0; k < lamps.size(); ++k) {
+      Image<float> photograph(size, 3);
+      for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+          const Vec3 at = {kMmPerPixel * (x - (size.width - 1) / 2.0), kMmPerPixel * ((size.height - 1) / 2.0 - y), 0};
+          const Vec3 away = lamps[k] - at, normal = normal_at(x, y);
+          const double reach = length(lamps[k]) / length(away);
+          const double light = std::max(0.0, dot(normal, normalized(away))) * reach * reach;
+          const std::array<double, 3> albedo = {0.3, 0.25 + 0.05 * std::sin(x / 3.0), 0.2};
+          for (int c = 0; c < 3; ++c) {
+            photograph(x, y, c) = static_cast<float>(albedo[static_cast<std::size_t>(c)] * light);
+            truth(x, y, c) = static_cast<float>(c == 0 ? normal.x : c == 1 ? normal.y : normal.z);
+          }
+        }
+      }
+      const std::string name = "lamp" + std::to_string(k) + ".exr";
+      write_planes(folder / name, photograph, {"R", "G", "B"});
+      list += name + " " + std::to_string(lamps[k].x) + " " + std::to_string(lamps[k].y) + " " +
+              std::to_string(lamps[k].z) + "\n";
+    }
+    write_planes(folder / "truth.exr", truth, {"X", "Y", "Z"});
+    put_bytes(folder / "lamps.lp", list);
+  }
+  static void write_planes(const fs::path& file, const Image<float>& image, const std::vector<std::string>& names) {
+    const std::array<View<const float>, 3> planes = {image.plane(0), image.plane(1), image.plane(2)};
+    ASSERT_TRUE(write_image(file, planes, names, {}));
+  }
+};
+
+TEST(NearPhotographs, LampsInMillimetresAreSolvedAsNearOnesAndToldOfWhereTheyAreNot) {
+  const Workspace work;
+  const NearSample sample;
+  sample.write(work / "photos");
+  const auto solve = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"solve", "--lp", (work / "photos/lamps.lp").string(), "--no-previews",
+                                          "-o",    (work / name).string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_weft(arguments);
+  };
+  const auto degrees = [&](const std::string& name) {
+    const Outcome run = run_weft({"compare", (work / name / "normal.exr").string(),
+                                  (work / "photos/truth.exr").string(), "--json", "--quiet"});
+    EXPECT_EQ(run.exit_code, 0) << run.error;
+    return run.exit_code == 0 ? run.json()["mean_deg"].get<double>() : 180;
+  };
+  const Outcome near = solve("near", {"--mm-per-pixel", "1"});
+  ASSERT_EQ(near.exit_code, 0) << near.error;
+  EXPECT_LT(degrees("near"), 0.05);
+  EXPECT_NE(near.output.find("near lights, in mm"), std::string::npos) << near.output;
+  const Outcome distant = solve("distant", {});
+  ASSERT_EQ(distant.exit_code, 0) << distant.error;
+  EXPECT_GT(degrees("distant"), 2);
+  EXPECT_NE(distant.error.find("--mm-per-pixel"), std::string::npos) << distant.error;
 }
 
 }  // namespace
