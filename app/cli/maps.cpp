@@ -52,7 +52,7 @@ void print_prices(const material::MapPrices& prices) {
                       : price.is_default ? ", default"
                                          : ""));
   }
-  print("height: against the direct solution; occlusion: against 64 directions");
+  print("height: against its first row, which is exact; occlusion: against 64 directions");
 }
 
 // What each setting costs and is off by on a piece of this cloth, before any of it is spent.

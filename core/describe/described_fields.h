@@ -53,13 +53,11 @@ inline void describe_exposure(Fields& fields, std::optional<double>& exposure_us
 }
 
 inline void describe_grid(Fields& fields, std::optional<double>& mm_per_pixel) {
-  fields.value(
-      {.name = "mm_per_pixel",
-       .says = "Of the grid; default what the camera sees. Of a solve of photographs: of theirs, kept "
-               "for all that is made of it",
-       .range = {1e-4, 100},
-       .option = "--mm-per-pixel"},
-      mm_per_pixel);
+  fields.value({.name = "mm_per_pixel",
+                .says = "Of the grid; default what the camera sees. Of solved photographs: of theirs, kept",
+                .range = {1e-4, 100},
+                .option = "--mm-per-pixel"},
+               mm_per_pixel);
 }
 
 inline void describe_compression(Fields& fields, Compression& compression) {

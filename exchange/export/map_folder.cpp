@@ -116,7 +116,6 @@ Result<void> add_parameters(const Json& parameters, const std::string& where,
 void find_session(MapFolder& folder) {
   const fs::path own = absolute_folder(folder.folder);
   for (const fs::path& session : {own.parent_path().parent_path(), own}) {
-    if (!solve::is_solved(session)) continue;
     Result<Session> read = solve::read_solved(session);
     if (read) folder.session = std::move(*read);
     if (read) return;

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "core/solve/solve_record.h"
 #include "material/finish/crop.h"
 #include "material/maps/occlusion.h"
 #include "material/run/surface_files.h"
@@ -39,6 +40,15 @@ Result<Surface> piece_of(const Surface& surface) {
       surface, {mm * ((size.width - width) / 2), mm * ((size.height - height) / 2), mm * width, mm * height});
   if (!cropped) return std::move(cropped).error();
   return std::move(cropped->surface);
+}
+
+bool is_whole(const Surface& surface) {
+  for (int y = 0; y < surface.status.height(); ++y) {
+    for (int x = 0; x < surface.status.width(); ++x) {
+      if ((surface.status(x, y) & kNoSolution) != 0) return false;
+    }
+  }
+  return true;
 }
 
 double rms_between(const Image<float>& a, const Image<float>& b) {
@@ -102,10 +112,14 @@ Result<MapPrices> price_maps(const MapsOptions& options, const PriceAims& aims, 
   const double times =
       static_cast<double>(surface.size().pixels()) / static_cast<double>(piece->size().pixels());
 
-  const Result<Tried> direct = height_by(HeightMethod::kDct, *piece, context);
+  // Both are exact; the cosine transform takes whole frames alone.
+  const HeightMethod exact = is_whole(*piece) ? HeightMethod::kDct : HeightMethod::kMultigrid;
+  const Result<Tried> direct = height_by(exact, *piece, context);
   if (!direct) return direct.error();
-  std::vector<MapPrice> prices = {{"height", "direct", times * direct->seconds, 0, "mm"}};
+  std::vector<MapPrice> prices = {
+      {"height", exact == HeightMethod::kDct ? "direct" : "multigrid", times * direct->seconds, 0, "mm"}};
   for (const HeightSetting& setting : kHeights) {
+    if (setting.method == exact) continue;
     const Result<Tried> tried = height_by(setting.method, *piece, context);
     if (!tried) return tried.error();
     prices.push_back({"height", setting.name, times * tried->seconds, rms_between(tried->map, direct->map),

@@ -46,10 +46,6 @@ std::vector<Shot> photographs_in(const SolveFacts& facts) {
 
 }  // namespace
 
-bool is_solved(const fs::path& folder) {
-  return is_there(folder / "session.json") || is_there(folder / kSolveProduct.document);
-}
-
 Result<Session> read_solved(const fs::path& folder) {
   const fs::path file = folder / kSolveProduct.document;
   if (is_there(folder / "session.json") || !is_there(file)) return read_session(folder);

@@ -22,9 +22,6 @@ inline constexpr double kAssumedMmPerPixel = 0.1;
 /// read_session(); kUsage for the solve of a session.
 Result<Session> read_solved(const std::filesystem::path& folder);
 
-/// Whether read_solved() takes it.
-bool is_solved(const std::filesystem::path& folder);
-
 /// A pixel of photographs that no calibrated camera took.
 struct PhotographedPixel {
   double mm = kAssumedMmPerPixel;  ///< its side

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -180,6 +182,21 @@ TEST_F(SolvedPhotographs, ThatAreFinishedGetTheMapsThatAPresetNeeds) {
 TEST_F(SolvedPhotographs, AreNotToldToCalibrateWhatTheyHaveNot) {
   const Json maps = json_of("maps linen --maps height");
   EXPECT_THAT(maps["verdicts"].dump(), Not(AnyOf(HasSubstr("weft calibrate"), HasSubstr("calibration"))));
+}
+
+// Without a whole frame the cosine transform has no heights to compare with.
+TEST_F(SolvedPhotographs, OfAMaskHaveAPriceAndMapsToo) {
+  Image<float> mask(Size{65, 49});
+  for (int y = 0; y < 49; ++y) {
+    for (int x = 0; x < 65; ++x) mask(x, y) = std::hypot(x - 32, y - 24) < 20 ? 1.0F : 0.0F;
+  }
+  const std::vector<View<const float>> planes = {mask.plane()};
+  ASSERT_TRUE(write_image(work_ / "photos" / "mask.png", planes, {"Y"}, {.type = SampleType::kUint8}));
+  done("solve --photos photos -o masked -q");
+  const Json rows = json_of("maps masked --explain")["rows"];
+  EXPECT_EQ(rows[0]["setting"], "multigrid") << rows;
+  EXPECT_EQ(rows[0]["error"], 0.0);
+  EXPECT_EQ(json_of("export masked --preset glb,unreal")["exports"].size(), 2U);
 }
 
 TEST_F(SolvedPhotographs, RefuseWhatNeedsARig) {

@@ -7425,7 +7425,7 @@ export interface components {
             draft?: boolean;
             /** @description Calibration folder; default the session's own; below the rig file's folder */
             calibration?: string;
-            /** @description Of the grid; default what the camera sees */
+            /** @description Of the grid; default what the camera sees. Of solved photographs: of theirs, kept */
             mm_per_pixel?: number;
             /**
              * @description Degrees that the grid is turned, counterclockwise from above
@@ -7460,7 +7460,7 @@ export interface components {
             kind: "make";
             /** @description A plain word: the same once more is the same job, and asks nothing new */
             request_id?: string;
-            /** @description Session folder, NAME.weft: its name */
+            /** @description Session folder, NAME.weft, or that of a solve of photographs: its name */
             session: string;
             /** @description Of the solve: the best level that takes so many seconds; default the level that its price recommends */
             within_s?: number;
@@ -7558,7 +7558,7 @@ export interface components {
             draft?: boolean;
             /** @description Calibration folder; default the session's own; below the rig file's folder */
             calibration?: string;
-            /** @description Of the grid; default what the camera sees */
+            /** @description Of the grid; default what the camera sees. Of solved photographs: of theirs, kept */
             mm_per_pixel?: number;
             /** @description Recipe as JSON: {"steps": [{"do": "tile"}]} */
             steps?: Record<string, unknown>;
@@ -7638,7 +7638,7 @@ export interface components {
             draft?: boolean;
             /** @description Calibration folder; default the session's own; below the rig file's folder */
             calibration?: string;
-            /** @description Of the grid; default what the camera sees */
+            /** @description Of the grid; default what the camera sees. Of solved photographs: of theirs, kept */
             mm_per_pixel?: number;
             /** @description Recipe as JSON: {"steps": [{"do": "tile"}]} */
             steps?: Record<string, unknown>;
@@ -7718,7 +7718,7 @@ export interface components {
             draft?: boolean;
             /** @description Calibration folder; default the session's own; below the rig file's folder */
             calibration?: string;
-            /** @description Of the grid; default what the camera sees */
+            /** @description Of the grid; default what the camera sees. Of solved photographs: of theirs, kept */
             mm_per_pixel?: number;
             /** @description Recipe as JSON: {"steps": [{"do": "tile"}]} */
             steps?: Record<string, unknown>;
@@ -7766,7 +7766,7 @@ export interface components {
             draft?: boolean;
             /** @description Calibration folder; default the session's own; below the rig file's folder */
             calibration?: string;
-            /** @description Of the grid; default what the camera sees */
+            /** @description Of the grid; default what the camera sees. Of solved photographs: of theirs, kept */
             mm_per_pixel?: number;
             /** @description Recipe as JSON: {"steps": [{"do": "tile"}]} */
             steps?: Record<string, unknown>;
