@@ -243,8 +243,8 @@ const material::MapFacts* MapFolder::map(const std::string& wanted) const {
 Result<MapFolder> open_map_folder(const MapFolderWish& wish) {
   const fs::path& input = wish.input;
   fs::path folder = input;
-  const bool is_session = solve::read_solved(input) || is_there(input / "session.json");
-  if (is_session) {
+  const Result<Session> session = solve::read_solved(input);
+  if (session || is_there(input / "session.json")) {
     const Result<fs::path> set = set_of_session(wish);
     if (!set) return set.error();
     folder = *set;
@@ -260,6 +260,7 @@ Result<MapFolder> open_map_folder(const MapFolderWish& wish) {
     if (Result<void> ok = find_source(*read, wish.is_draft); !ok) return std::move(ok).error();
     return read;
   }
+  if (!session && session.error().kind == ErrorKind::kUsage) return session.error();
   return Error{ErrorKind::kNoInput, kUnusable, input.string(),
                "it is no session, no set of maps, no built material and no solve",
                "name a folder with session.json, maps.json, material.json or solve.json"};

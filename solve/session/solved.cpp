@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/base/files.h"
 #include "core/base/product.h"
@@ -44,11 +46,21 @@ std::vector<Shot> photographs_in(const SolveFacts& facts) {
   return shots;
 }
 
+Error is_of_solves(const fs::path& folder, const std::vector<Product>& solves) {
+  return {ErrorKind::kUsage, "this folder is no solve", folder.string(),
+          fmt::format("it holds {} of photographs, each in a folder of its own", solves.size()),
+          fmt::format("name one of these, as {}", solves.back().folder.string())};
+}
+
 }  // namespace
 
 Result<Session> read_solved(const fs::path& folder) {
   const fs::path file = folder / kSolveProduct.document;
-  if (is_there(folder / "session.json") || !is_there(file)) return read_session(folder);
+  if (is_there(folder / "session.json")) return read_session(folder);
+  if (!is_there(file)) {
+    const std::vector<Product> solves = list_products(kSolveProduct, folder);
+    return solves.empty() ? read_session(folder) : Result<Session>(is_of_solves(folder, solves));
+  }
   const Result<Json> document = read_json(file, kSolveProduct.schema, 1);
   if (!document) return document.error();
   const Result<SolveFacts> facts = solve_facts_from_json(*document, file.string());

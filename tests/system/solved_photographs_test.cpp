@@ -206,6 +206,11 @@ TEST_F(SolvedPhotographs, RefuseWhatNeedsARig) {
   ASSERT_EQ(run("solve --photos photos -o draft --quality preview -q").exit_code, 0);
   expect_refusal(work_, {"export", (work_ / "draft").string(), "--preset", "glb", "-q"}, 66,
                  {"weft solve --photos"});
+  ASSERT_EQ(run("solve --photos photos -q").exit_code, 0);
+  for (const char* verb : {"export", "maps"})
+    expect_refusal(
+        work_, {verb, (work_ / "photos-solve").string(), "-q", verb[0] == 'e' ? "--preset=glb" : "--draft"},
+        64, {"name one of these, as", "photos-solve/"});
   expect_refusal(work_, {"export", "photos", "--preset", "glb", "--mm-per-pixel", "1", "-q"}, 64,
                  {"a solve of photographs alone"}, {.folder = work_.path()});
 }
