@@ -218,7 +218,8 @@ std::optional<std::uint64_t> exif_of_jpeg(const ReadAt& read_at) {
   for (int i = 0; i < kMostParts && read_at(at, segment) && segment[0] == 0xff; ++i) {
     const std::uint8_t marker = segment[1];
     if (marker == 0xda || marker == 0xd9) return {};
-    if (marker == 0xe1 && std::memcmp(&segment[4], kName.data(), kName.size()) == 0) return at + segment.size();
+    if (marker == 0xe1 && std::memcmp(&segment[4], kName.data(), kName.size()) == 0)
+      return at + segment.size();
     at += 2 + big_endian(std::span(segment).subspan(2, 2));
   }
   return {};

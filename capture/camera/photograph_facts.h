@@ -11,7 +11,8 @@
 
 namespace weft::capture {
 
-/// What a photograph says of itself: in the header of a TIFF or a raw, in the EXIF of a JPEG or a PNG. What it does not say is empty or 0.
+/// What a photograph says of itself: in the header of a TIFF or a raw, in the EXIF of a JPEG or a PNG. What
+/// it does not say is empty or 0.
 struct PhotographFacts {
   /// By its content: "dng", "nef", "cr2", "arw", "pef"; "cr3", "rw2", "orf", "raf", "crw", "mrw", "x3f", raws
   /// of which nothing else is read; "tif", "jpg"; empty: none of these.

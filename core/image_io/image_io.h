@@ -50,9 +50,9 @@ struct ImageFileInfo {
   ImageAttributes attributes;
   PixelPitch pitch_mm = {};
   ColorSpace color = ColorSpace::kData;
-  std::string color_by = {};        ///< what says so, as "its chunk sRGB"; empty: nothing does
-  std::array<int, 2> origin = {};   ///< where an EXR's pixels begin in the picture that they are a part of
-  bool is_mosaic = false;           ///< grey behind colour filters, as a raw file's
+  std::string color_by = {};       ///< what says so, as "its chunk sRGB"; empty: nothing does
+  std::array<int, 2> origin = {};  ///< where an EXR's pixels begin in the picture that they are a part of
+  bool is_mosaic = false;          ///< grey behind colour filters, as a raw file's
   /// Other EXR parts or TIFF pages that may be meant as well as the one that is read, in words.
   std::vector<std::string> alike = {};
   std::vector<std::string> remarks = {};  ///< what was passed over, as "2 bytes behind its end"
@@ -69,9 +69,10 @@ struct LoadedImage {
 
 /// What a file says of itself; its content tells the format, not its name. Errors: kNoInput, kBadData.
 Result<ImageFileInfo> read_image_info(const std::filesystem::path& file);
-/// Reads every channel of an image, whatever its tiling and data window; NaN and infinities pass. Of EXR parts
-/// and TIFF pages it is the largest, thumbnails and parts without a colour or grey being passed over. Errors: kNoInput; kBadData if truncated, damaged, deep or a raw file's thumbnail;
-/// kTryAgain if it is larger than the memory that is free.
+/// Reads every channel of an image, whatever its tiling and data window; NaN and infinities pass. Of EXR
+/// parts and TIFF pages it is the largest, thumbnails and parts without a colour or grey being passed over.
+/// Errors: kNoInput; kBadData if truncated, damaged, deep or a raw file's thumbnail; kTryAgain if it is
+/// larger than the memory that is free.
 Result<LoadedImage> read_image(const std::filesystem::path& file);
 
 struct WriteOptions {

@@ -101,7 +101,8 @@ Result<LoadedImage> read_pixels(ImageSource& source, const fs::path& file) {
 
 int choose_part(std::vector<PicturePart> parts, ImageFileInfo& info) {
   if (parts.empty()) return 0;
-  const auto largest = std::ranges::max_element(parts, {}, [](const PicturePart& p) { return p.size.pixels(); });
+  const auto largest =
+      std::ranges::max_element(parts, {}, [](const PicturePart& p) { return p.size.pixels(); });
   const PicturePart chosen = *largest;
   parts.erase(largest);
   for (const PicturePart& other : parts) {

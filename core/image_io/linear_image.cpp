@@ -65,7 +65,8 @@ Result<LightChannels> light_channels(const ImageFileInfo& info, const std::strin
                      "write the one that is the photograph into a file of its own");
   }
   if (info.is_mosaic)
-    return not_light(where, "it is a mosaic of counts behind colour filters", "develop it, or give the raw file");
+    return not_light(where, "it is a mosaic of counts behind colour filters",
+                     "develop it, or give the raw file");
   const auto place = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
   };

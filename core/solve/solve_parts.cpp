@@ -18,7 +18,8 @@ void describe(Fields& fields, DistantPhotograph& p) {
   fields.value({"direction", "To the light: x to the right, y up, z to the camera", {}, kMustSay},
                p.direction);
   fields.value({"irradiance_rgb", "That the photograph is divided by", {}, kMustSay}, p.irradiance_rgb);
-  fields.value({"distance_mm", "Of a near light from the middle of the picture", {}, kUnlessEmpty}, p.distance_mm);
+  fields.value({"distance_mm", "Of a near light from the middle of the picture", {}, kUnlessEmpty},
+               p.distance_mm);
 }
 
 void describe(Fields& fields, SolveInput& i) {
@@ -35,7 +36,8 @@ void describe(Fields& fields, SolveInput& i) {
   fields.value({"mm_per_pixel", "Of the cloth, under near lights", {}, kUnlessEmpty}, i.mm_per_pixel);
   fields.value({"fov_deg", "Of the picture's width, under near lights", {}, kUnlessEmpty}, i.fov_deg);
   fields.value({"dark", "SHA-256 of the one with all lamps off", {}, kUnlessEmpty}, i.dark);
-  fields.value({"ambient", "Light that was taken from all, a share of full scale", {}, kUnlessEmpty}, i.ambient);
+  fields.value({"ambient", "Light that was taken from all, a share of full scale", {}, kUnlessEmpty},
+               i.ambient);
   fields.value({"mask", "SHA-256 of their mask", {}, kUnlessEmpty}, i.mask);
   fields.value({"second_pose", "The same of a session in another pose", {}, kUnlessEmpty}, i.second_pose);
 }

@@ -44,12 +44,12 @@ struct SolveInput {
   std::vector<SolvedShot> shots = {};
   std::optional<ClothPose> pose = {};  ///< of a cloth that does not lie flat
   std::vector<DistantPhotograph> photographs = {};
-  std::string transfer = {}, mask = {};    ///< by name; SHA-256
-  std::optional<int> orientation = {};     ///< that they were turned by; none: as they are stored
-  std::string dark = {};                   ///< SHA-256 of the one with all lamps off
-  std::optional<double> ambient = {};      ///< light that was taken from all, a share of full scale
+  std::string transfer = {}, mask = {};  ///< by name; SHA-256
+  std::optional<int> orientation = {};   ///< that they were turned by; none: as they are stored
+  std::string dark = {};                 ///< SHA-256 of the one with all lamps off
+  std::optional<double> ambient = {};    ///< light that was taken from all, a share of full scale
   std::optional<double> mm_per_pixel = {}, fov_deg = {};  ///< of the cloth, of the picture's width
-  Json second_pose = {};                 ///< a SolveInput; null: there was none
+  Json second_pose = {};                                  ///< a SolveInput; null: there was none
 
   friend bool operator==(const SolveInput&, const SolveInput&) = default;
 };

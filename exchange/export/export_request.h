@@ -26,8 +26,8 @@ struct ExportOptions {
   bool is_dx10 = false;                      ///< DDS with DX10 headers alone
   /// What a person says of a pixel of solved photographs, which solve::keep_pixel() keeps before.
   std::optional<double> mm_per_pixel = {};
-  std::optional<double> to_deg = {};         ///< normals lose at most this in the mean: chooses their bits
-  std::optional<double> within_s = {};       ///< of writing the textures by one thread: chooses them, too
+  std::optional<double> to_deg = {};    ///< normals lose at most this in the mean: chooses their bits
+  std::optional<double> within_s = {};  ///< of writing the textures by one thread: chooses them, too
 };
 
 /// What `weft export` and a job that exports are told.

@@ -16,12 +16,12 @@
 namespace weft::solve {
 namespace {
 
-constexpr std::int64_t kFewestFull = 100;    // samples of all photographs
-constexpr std::int64_t kFewestInOne = 20;    // of a photograph, for it to count
-constexpr double kMostOfOne = 0.5;           // of a photograph's samples: more is a surface of one value
-constexpr double kNear = 0.98, kBelow = 0.8; // of the largest value
-constexpr int kPile = 3;                     // times as many as come near, or as any value below has
-constexpr std::size_t kBins = 4096;          // from kBelow to the largest value
+constexpr std::int64_t kFewestFull = 100;     // samples of all photographs
+constexpr std::int64_t kFewestInOne = 20;     // of a photograph, for it to count
+constexpr double kMostOfOne = 0.5;            // of a photograph's samples: more is a surface of one value
+constexpr double kNear = 0.98, kBelow = 0.8;  // of the largest value
+constexpr int kPile = 3;                      // times as many as come near, or as any value below has
+constexpr std::size_t kBins = 4096;           // from kBelow to the largest value
 
 float largest_in(View<const float> plane) {
   float largest = 0;
@@ -105,10 +105,10 @@ Result<void> find_full_scale(const Exposures& exposures) {
                  [&](std::size_t k, int) { mark(photographs[k].plane(c), largest); });
   }
   if (found != std::array<float, 3>{}) {
-    exposures.photographs.conditions.assumed.push_back(
-        fmt::format("light above {:.4g} of the files' full scale is taken as clipped there, where many samples "
-                    "stop",
-                    std::ranges::max(found)));
+    exposures.photographs.conditions.assumed.push_back(fmt::format(
+        "light above {:.4g} of the files' full scale is taken as clipped there, where many samples "
+        "stop",
+        std::ranges::max(found)));
   }
   return {};
 }

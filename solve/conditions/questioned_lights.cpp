@@ -25,11 +25,11 @@ namespace {
 
 using solver::BlockTile;
 
-constexpr int kBlock = 4;               // pixels: whole cells of a colour filter
-constexpr double kTells = 1.5;          // times as well predicted
-constexpr double kIsSure = 2;           // so that it is mended
-constexpr double kLeastConstant = 0.03; // of a reading
-constexpr double kLessCurl = 0.8;       // of the curl as given
+constexpr int kBlock = 4;                // pixels: whole cells of a colour filter
+constexpr double kTells = 1.5;           // times as well predicted
+constexpr double kIsSure = 2;            // so that it is mended
+constexpr double kLeastConstant = 0.03;  // of a reading
+constexpr double kLessCurl = 0.8;        // of the curl as given
 
 // --- readings
 
@@ -41,7 +41,7 @@ double block_mean(View<const float> plane, int x0, int y0) {
   return sum / (kBlock * kBlock);
 }
 
-// Of a mosaic's block all its colours; of developed photographs green.
+// A mosaic's block has all its colours; developed photographs are asked by their green.
 Vec3 light_at(const Photographs& photographs, std::size_t k, int x, int y) {
   const bool is_mosaic = photographs.planes().count == 1;
   Vec3 sum;
@@ -61,8 +61,7 @@ BlockTile block_tile(const Photographs& photographs, Rect part) {
   tile.readings.resize(static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height) * count);
   Image<float> scratch({part.width(), part.height()});
   for (std::size_t k = 0; k < count; ++k) {
-    tile.lights.push_back(
-        light_at(photographs, k, (part.x0 + part.x1) / 2, (part.y0 + part.y1) / 2));
+    tile.lights.push_back(light_at(photographs, k, (part.x0 + part.x1) / 2, (part.y0 + part.y1) / 2));
     const View<const float> readings =
         readings_of(photographs.frames, k, part, scratch.plane())[static_cast<std::size_t>(plane)];
     std::size_t at = k;
@@ -77,7 +76,8 @@ BlockTile block_tile(const Photographs& photographs, Rect part) {
 std::vector<BlockTile> block_tiles(const Photographs& photographs, int threads) {
   const std::vector<Rect> parts = solver::sample_tiles(photographs.size);
   std::vector<BlockTile> tiles(parts.size());
-  parallel_for(parts.size(), threads, [&](std::size_t i, int) { tiles[i] = block_tile(photographs, parts[i]); });
+  parallel_for(parts.size(), threads,
+               [&](std::size_t i, int) { tiles[i] = block_tile(photographs, parts[i]); });
   return tiles;
 }
 
@@ -128,9 +128,8 @@ std::vector<std::size_t> counted_order(const std::vector<Shot>& shots) {
   const auto before_in_text = [&](std::size_t a, std::size_t b) { return shots[a].file < shots[b].file; };
   if (!std::ranges::is_sorted(order, before_in_text)) return {};
   std::vector<std::size_t> counted = order;
-  std::ranges::stable_sort(counted, [&](std::size_t a, std::size_t b) {
-    return stands_before(shots[a].file, shots[b].file);
-  });
+  std::ranges::stable_sort(
+      counted, [&](std::size_t a, std::size_t b) { return stands_before(shots[a].file, shots[b].file); });
   if (counted == order) return {};
   std::vector<std::size_t> light_of(shots.size());
   for (std::size_t rank = 0; rank < counted.size(); ++rank) light_of[counted[rank]] = rank;
@@ -143,12 +142,13 @@ std::optional<Suspicion> suspect_order(const std::vector<BlockTile>& tiles, doub
   if (order.empty()) return std::nullopt;
   const double factor = error / solver::left_out_error_in_order(tiles, order);
   if (!(factor > kTells)) return std::nullopt;
-  return Suspicion{factor,
-                   {"FILE_ORDER",
-                    fmt::format("Light that is left out would be predicted {:.2g} times as well if photographs "
-                                "were listed as people count (2 before 10)",
-                                factor),
-                    "list the files in the order of the lights"}};
+  return Suspicion{
+      factor,
+      {"FILE_ORDER",
+       fmt::format("Light that is left out would be predicted {:.2g} times as well if photographs "
+                   "were listed as people count (2 before 10)",
+                   factor),
+       "list the files in the order of the lights"}};
 }
 
 std::optional<Verdict> doubt_axes(const std::vector<BlockTile>& tiles) {
@@ -162,16 +162,20 @@ std::optional<Verdict> doubt_axes(const std::vector<BlockTile>& tiles) {
   };
   static constexpr std::array<Words, solver::kSymmetries> kWords = {
       {{"", ""},
-       {"mirrored", "most often y points downwards in the light file: solve with --flip y, or with --flip x "
-                    "where relief comes out inside out"},
-       {"turned by a quarter", "solve with --flip left, or with --flip right where relief comes out inside out"},
-       {"exchanged, x for y", "solve with --flip exchange, or with --flip against where relief comes out inside "
-                              "out"}}};
-  return Verdict{"LIGHTS_MIRRORED",
-                 fmt::format("The lights are {}: so the solved normals would be those of a surface (their curl "
-                             "falls to {} percent)",
-                             kWords[least].are, percent_words(share)),
-                 kWords[least].remedy};
+       {"mirrored",
+        "most often y points downwards in the light file: solve with --flip y, or with --flip x "
+        "where relief comes out inside out"},
+       {"turned by a quarter",
+        "solve with --flip left, or with --flip right where relief comes out inside out"},
+       {"exchanged, x for y",
+        "solve with --flip exchange, or with --flip against where relief comes out inside "
+        "out"}}};
+  return Verdict{
+      "LIGHTS_MIRRORED",
+      fmt::format("The lights are {}: so the solved normals would be those of a surface (their curl "
+                  "falls to {} percent)",
+                  kWords[least].are, percent_words(share)),
+      kWords[least].remedy};
 }
 
 void convert(Developed& developed, Transfer taken, int threads) {
@@ -204,7 +208,8 @@ Result<void> question_lights(const Exposures& exposures) {
   const double error = solver::left_out_error(tiles);
   std::optional<Suspicion> curve;
   if (!plan.is_of_rig) {
-    if (plan.transfer_is_custom && plan.transfer != Transfer::kAuto) curve = suspect_curve(tiles, error, plan.transfer);
+    if (plan.transfer_is_custom && plan.transfer != Transfer::kAuto)
+      curve = suspect_curve(tiles, error, plan.transfer);
     suspect(suspect_order(tiles, error, plan.lit));
     suspect(suspect_constant(tiles, error));
   }

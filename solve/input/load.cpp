@@ -150,7 +150,8 @@ void hide_outside(const Image<std::uint8_t>& mask, Image<float>& rgb) {
 constexpr std::uint64_t kMostInMemory = std::uint64_t{1} << 30;
 
 bool lie_on_disk(const SolvePlan& plan) {
-  return !plan.raw && 12 * static_cast<std::uint64_t>(plan.size.pixels()) * plan.frames().size() > kMostInMemory;
+  return !plan.raw &&
+         12 * static_cast<std::uint64_t>(plan.size.pixels()) * plan.frames().size() > kMostInMemory;
 }
 
 // The folder for large files that may be lost; /tmp is often memory.

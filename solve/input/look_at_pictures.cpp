@@ -91,14 +91,17 @@ void even_out_exposures(const Pictures& pictures, SolvePlan& plan) {
   }
   if (!differ) return;
   std::vector<DistantLight>& lights = std::get<DistantLights>(*plan.calibration.lights).lights;
-  const bool are_told = std::ranges::any_of(
-      lights, [](const DistantLight& light) { return light.irradiance_rgb != std::array<double, 3>{1, 1, 1}; });
+  const bool are_told = std::ranges::any_of(lights, [](const DistantLight& light) {
+    return light.irradiance_rgb != std::array<double, 3>{1, 1, 1};
+  });
   std::map<std::string, int> times;
   for (const PictureMeaning& picture : pictures) ++times[exposure_words(picture.exposure_us)];
   std::string words;
-  for (const auto& [time, count] : times) words += fmt::format("{}{} of {}", words.empty() ? "" : ", ", count, time);
+  for (const auto& [time, count] : times)
+    words += fmt::format("{}{} of {}", words.empty() ? "" : ", ", count, time);
   if (are_told) {
-    plan.assumed.push_back("exposures differ (" + words + "): the strengths given are taken to hold with them");
+    plan.assumed.push_back("exposures differ (" + words +
+                           "): the strengths given are taken to hold with them");
     return;
   }
   for (std::size_t k = 0; k < ratios.size(); ++k) {

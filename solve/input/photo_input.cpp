@@ -78,19 +78,19 @@ void stand_near(const PhotoOptions& options, const LightList& list, SolvePlan& p
     for (std::size_t c = 0; c < 3; ++c)
       led.flux_rgb[c] = distant.lights[k].irradiance_rgb[c] * distance_mm * distance_mm;
   }
-  const double width_mm = plan.size.width * options.mm_per_pixel;
+  const double mm_per_pixel = *options.mm_per_pixel, width_mm = plan.size.width * mm_per_pixel;
   const double distance_mm =
-      options.fov_deg > 0 ? width_mm / (2 * std::tan(options.fov_deg * kDegree / 2)) : kFarAway_mm;
-  plan.calibration.camera = overhead_camera(plan.size, distance_mm, options.mm_per_pixel);
+      options.fov_deg ? width_mm / (2 * std::tan(*options.fov_deg * kDegree / 2)) : kFarAway_mm;
+  plan.calibration.camera = overhead_camera(plan.size, distance_mm, mm_per_pixel);
   plan.calibration.lights = std::move(near);
   plan.input.mm_per_pixel = options.mm_per_pixel;
-  if (options.fov_deg > 0) plan.input.fov_deg = options.fov_deg;
+  plan.input.fov_deg = options.fov_deg;
   for (std::size_t k = 0; k < plan.lit.size(); ++k)
     plan.input.photographs[k].distance_mm =
         length(list.lights[static_cast<std::size_t>(plan.lit[k].led) - 1].toward);
-  plan.assumed.push_back(fmt::format("near lights, in mm over the middle of the picture, of {:g} mm a pixel{}",
-                                     options.mm_per_pixel,
-                                     options.fov_deg > 0 ? "" : ", seen from far away"));
+  plan.assumed.push_back(
+      fmt::format("near lights, in mm over the middle of the picture, of {:g} mm a pixel{}", mm_per_pixel,
+                  options.fov_deg ? "" : ", seen from far away"));
 }
 
 // What a person calls them by: the name of their folder or light file.
@@ -131,7 +131,7 @@ Result<SolvePlan> plan_photos(const PhotoOptions& options) {
   }
   if (Result<void> looked = look_at_pictures(options, *plan); !looked) return std::move(looked).error();
   if (Result<void> looked = look_at_mask(*plan); !looked) return std::move(looked).error();
-  if (list->are_positions && options.mm_per_pixel > 0) stand_near(options, *list, *plan);
+  if (list->are_positions && options.mm_per_pixel) stand_near(options, *list, *plan);
   const std::string name = name_of_source(options).string();
   plan->where = plan->session.fabric = name;
   std::error_code ignored;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "core/base/result.h"
@@ -12,8 +13,8 @@
 
 namespace weft::solve {
 
-/// Whether directions of lights are those of the picture as it is shown, by its tag Orientation, or as its rows
-/// are stored.
+/// Whether directions of lights are those of the picture as it is shown, by its tag Orientation, or as its
+/// rows are stored.
 enum class PictureOrientation { kShown, kStored };
 inline constexpr std::array<const char*, 2> kPictureOrientationNames = {"shown", "stored"};
 
@@ -30,8 +31,9 @@ struct PhotoOptions {
   LightFlip flip = LightFlip::kNone;
   std::filesystem::path dark;  ///< the same with all lamps off; empty: none
   double ambient = 0;          ///< light that is in all of them, a share of full scale
-  double mm_per_pixel = 0;     ///< of the cloth; 0: not known. With it positions of lights are near lights, in mm
-  double fov_deg = 0;          ///< of the picture's width; 0: seen from far away
+  /// How large a pixel is on the cloth; none: not known. With it positions of lights are near lights, in mm.
+  std::optional<double> mm_per_pixel = {};
+  std::optional<double> fov_deg = {};  ///< of the picture's width; none: seen from far away
   Clipped clipped = Clipped::kMark;
   std::vector<int> lights;  ///< numbers from 1; empty: all
 };

@@ -413,14 +413,18 @@ Verdict unexplained(const PhotographsSummary& photographs, std::optional<solver:
 std::optional<Verdict> near_lights(const PhotographsSummary& photographs) {
   constexpr double kLeastShare = 0.1;  // of the residual's variance
   std::vector<double> shares;
-  for (const solver::LightEvidence& light : photographs.diagnosis.lights) shares.push_back(light.gradient_share);
+  for (const solver::LightEvidence& light : photographs.diagnosis.lights)
+    shares.push_back(light.gradient_share);
   if (photographs.of_session || photographs.are_near || shares.empty()) return std::nullopt;
-  if (photographs.diagnosis.residual < kMisfit || !(lower_quantile(shares, 0.5) > kLeastShare)) return std::nullopt;
-  return Verdict{"LIGHTS_ARE_NEAR",
-                 fmt::format("All photographs are brighter towards one side than lamps far away make them: that "
-                             "explains {} percent of what is left over in half of them",
-                             percent_words(lower_quantile(shares, 0.5))),
-                 "give positions of the lamps in mm and --mm-per-pixel, or move the lamps farther away"};
+  std::ranges::sort(shares);
+  const double share = (shares[(shares.size() - 1) / 2] + shares[shares.size() / 2]) / 2;
+  if (photographs.diagnosis.residual < kMisfit || !(share > kLeastShare)) return std::nullopt;
+  return Verdict{
+      "LIGHTS_ARE_NEAR",
+      fmt::format("All photographs are brighter towards one side than lamps far away make them: that "
+                  "explains {} percent of what is left over in half of them",
+                  percent_words(share)),
+      "give positions of the lamps in mm and --mm-per-pixel, or move the lamps farther away"};
 }
 
 }  // namespace
@@ -443,12 +447,12 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
   const bool is_dominated =
       specular > kSpecularDominated && photographs.outshining >= solver::kLeastOutshining;
   std::ranges::move(moved_verdicts(photographs), std::back_inserter(verdicts));
+  if (std::optional<Verdict> near = near_lights(photographs)) verdicts.push_back(std::move(*near));
   if (check && verdicts.empty()) {
     if (const std::optional<Verdict> unfit = verdict_of(*check, photographs.of_session, level))
       verdicts.push_back(*unfit);
   }
   const bool shines = is_dominated || photographs.glossy_share > kMostlyGlossy;
-  if (std::optional<Verdict> near = near_lights(photographs)) verdicts.push_back(std::move(*near));
   if (verdicts.empty() && !shines && !photographs.shifts.found && misfit_of(photographs) > kMisfit)
     verdicts.push_back(unexplained(photographs, level));
   if (is_dominated) {

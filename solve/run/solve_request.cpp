@@ -175,11 +175,12 @@ void describe(Fields& fields, SolveRequest& r) {
                  .says = "How photographs lie under their lights: shown (turned as their tag says), stored",
                  .said = Said::kAtThisMachine},
                 r.photos.orientation, solve::kPictureOrientationNames);
-  fields.choice({.name = "flip",
-                 .says = "What is done to the directions of their lights: none, x, y, z or all turned round, left "
-                         "or right by a quarter, exchange (x for y), against (x for -y)",
-                 .said = Said::kAtThisMachine},
-                r.photos.flip, solve::kLightFlipNames);
+  fields.choice(
+      {.name = "flip",
+       .says = "What is done to the directions of their lights: none, x, y, z or all turned round, left "
+               "or right by a quarter, exchange (x for y), against (x for -y)",
+       .said = Said::kAtThisMachine},
+      r.photos.flip, solve::kLightFlipNames);
   fields.value({.name = "dark",
                 .says = "The same photograph with all lamps off, which is taken from the others",
                 .said = Said::kAtThisMachine},

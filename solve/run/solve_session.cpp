@@ -30,8 +30,8 @@
 #include "solve/report/reflectance_report.h"
 #include "solve/report/solve_report.h"
 #include "solve/run/facts_json.h"
-#include "solve/session/solved.h"
 #include "solve/session/left_out_shots.h"
+#include "solve/session/solved.h"
 
 namespace weft::solve {
 namespace {
@@ -497,7 +497,7 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   const Result<SolvePlan> plan = plan_photos(photos);
   if (!plan) return plan.error();
   Result<SolveReport> report = solve(*method, *plan, options, context);
-  if (!report || !(photos.mm_per_pixel > 0)) return report;
+  if (!report) return report;
   std::optional<double> mm_per_pixel = photos.mm_per_pixel;
   if (Result<void> kept = keep_pixel(report->folder, mm_per_pixel); !kept) return std::move(kept).error();
   return report;

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewestBlocks = 100;
-constexpr double kMostWork = 4e8;         // multiplications of one witness
-constexpr double kWorstCondition = 1e4;   // of the lights' normal equations
-constexpr double kSteepest = 0.3;         // nz: beyond it slopes are mostly noise
+constexpr double kMostWork = 4e8;        // multiplications of one witness
+constexpr double kWorstCondition = 1e4;  // of the lights' normal equations
+constexpr double kSteepest = 0.3;        // nz: beyond it slopes are mostly noise
 
 double median_of(std::vector<double>& values) {
   if (values.size() < kFewestBlocks) return kNone;

@@ -89,7 +89,8 @@ TEST_F(RealPhotographs, TheGreySphereIsRound) {
   ASSERT_EQ(run.exit_code, 0) << run.error;
   const Json assumed = Json::parse(bytes_of(work_ / "maps" / "solve.json"))["assumed"];
   EXPECT_EQ(assumed, Json::array({"lights are those of lights.txt in uw_photos",
-                                  "photographs are in the order of their names, gray.0.png to gray.11.png"}));
+                                  "photographs are in the order of their names, gray.0.png to gray.11.png",
+                                  "12 photographs of 512 x 340, 8 bits, taken as linear by --transfer"}));
 
   const fs::path mask_file = data_ / "gray" / "gray.mask.png";
   const Result<LoadedImage> mask = read_image(mask_file);

@@ -26,8 +26,9 @@ std::vector<Vec3> ring(std::size_t count) {
 }
 
 // Matt cloth of a height in closed form, 0.3 sin(x/5 + y/7) + 0.2 cos(x/3 - y/4), seen through `curve`.
-BlockTile cloth_under(const std::vector<Vec3>& lights,
-                      const std::function<double(double)>& curve = [](double v) { return v; }) {
+BlockTile cloth_under(
+    const std::vector<Vec3>& lights,
+    const std::function<double(double)>& curve = [](double v) { return v; }) {
   BlockTile tile = {kSide, kSide, lights, {}};
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
@@ -62,12 +63,36 @@ TEST(SanityWitnesses, TheCurlOfTheSlopesTellsWhichAxesLightsMean) {
     std::function<Vec3(Vec3)> as;
     Symmetry meant;
   } cases[] = {{"as given", [](Vec3 v) { return v; }, Symmetry::kAsGiven},
-               {"half a turn", [](Vec3 v) { return Vec3{-v.x, -v.y, v.z}; }, Symmetry::kAsGiven},
-               {"y down", [](Vec3 v) { return Vec3{v.x, -v.y, v.z}; }, Symmetry::kMirrored},
-               {"x to the left", [](Vec3 v) { return Vec3{-v.x, v.y, v.z}; }, Symmetry::kMirrored},
-               {"a quarter", [](Vec3 v) { return Vec3{-v.y, v.x, v.z}; }, Symmetry::kQuarterTurned},
-               {"the other quarter", [](Vec3 v) { return Vec3{v.y, -v.x, v.z}; }, Symmetry::kQuarterTurned},
-               {"exchanged", [](Vec3 v) { return Vec3{v.y, v.x, v.z}; }, Symmetry::kExchanged}};
+               {"half a turn",
+                [](Vec3 v) {
+                  return Vec3{-v.x, -v.y, v.z};
+                },
+                Symmetry::kAsGiven},
+               {"y down",
+                [](Vec3 v) {
+                  return Vec3{v.x, -v.y, v.z};
+                },
+                Symmetry::kMirrored},
+               {"x to the left",
+                [](Vec3 v) {
+                  return Vec3{-v.x, v.y, v.z};
+                },
+                Symmetry::kMirrored},
+               {"a quarter",
+                [](Vec3 v) {
+                  return Vec3{-v.y, v.x, v.z};
+                },
+                Symmetry::kQuarterTurned},
+               {"the other quarter",
+                [](Vec3 v) {
+                  return Vec3{v.y, -v.x, v.z};
+                },
+                Symmetry::kQuarterTurned},
+               {"exchanged",
+                [](Vec3 v) {
+                  return Vec3{v.y, v.x, v.z};
+                },
+                Symmetry::kExchanged}};
   for (const auto& c : cases) {
     const std::vector<BlockTile> tiles = {with_lights(cloth, c.as)};
     const auto found = curls(tiles);
@@ -100,7 +125,8 @@ TEST(SanityWitnesses, ListedInTheOrderOfTextTwelvePhotographsFitBetterAsPeopleCo
   const std::vector<std::size_t> text = {0, 9, 10, 11, 1, 2, 3, 4, 5, 6, 7, 8};  // 1, 10, 11, 12, 2 ...
   BlockTile listed = cloth;
   for (std::size_t block = 0; block < static_cast<std::size_t>(kSide * kSide); ++block) {
-    for (std::size_t k = 0; k < 12; ++k) listed.readings[block * 12 + k] = cloth.readings[block * 12 + text[k]];
+    for (std::size_t k = 0; k < 12; ++k)
+      listed.readings[block * 12 + k] = cloth.readings[block * 12 + text[k]];
   }
   const std::vector<BlockTile> tiles = {listed};
   EXPECT_GT(left_out_error(tiles), 0.05);
