@@ -37,7 +37,8 @@ void describe_photographs(Fields& fields, SolveRequest& r) {
                r.photos.folder);
   fields.value(
       {.name = "light_file",
-       .says = "Their lights: .lp, light_directions.txt, CSV, .npy, .dome, .relight or JSON of Meshroom",
+       .says = "Their lights, x right, y up, z to the camera: .lp, light_directions.txt, CSV, .npy, .dome, "
+               ".relight or JSON of Meshroom",
        .option = "--lp",
        .said = Said::kAtThisMachine},
       r.photos.light_file);

@@ -237,10 +237,10 @@ TEST_F(CommandLine, PhotographsSayAloudHowTheyAreTaken) {
   eight_bits.type = SampleType::kUint8;
   eight_bits.write(work_ / "eight");
   PhotographSample().write(work_ / "float");
-  EXPECT_THAT(run_weft({"solve", "--photos", "eight"}, {.folder = work_.path()}).error,
-              testing::AllOf(testing::HasSubstr("srgb"), testing::HasSubstr("--transfer")));
-  EXPECT_THAT(run_weft({"solve", "--photos", "float"}, {.folder = work_.path()}).error,
-              testing::AllOf(testing::HasSubstr("linear"), testing::HasSubstr("--transfer")));
+  EXPECT_THAT(run_weft({"solve", "--photos", "eight"}, {.folder = work_.path()}).output,
+              testing::HasSubstr("taken as sRGB, as 8 bits are where nothing says otherwise"));
+  EXPECT_THAT(run_weft({"solve", "--photos", "float"}, {.folder = work_.path()}).output,
+              testing::HasSubstr("taken as linear, as floats are where nothing says otherwise"));
 }
 
 TEST(Bench, PrintsOneJsonDocument) {
@@ -302,7 +302,7 @@ const std::vector<Verb>& verbs() {
       {{"simulate"}, {"units", "must not exist", "0 is all the machine has"}},
       {{"solve"},
        {"numbered from 1", "default all", "default the session's own", "default SESSION/solve/ID", "=none",
-        "=auto", "Columns", "Rows", "x right, y up, z to the camera", "unit x y z"}},
+        "=auto", "Columns", "Rows", "x right, y up, z to the camera"}},
       {{"compare"}, {"degrees", "relative", "=auto"}},
       {{"bench", "solve"}, {"millions of pixels", "=4"}},
       {{"demo"}, {"millions of pixels", "=demo"}},

@@ -137,11 +137,16 @@ TEST_F(NoRoom, ASessionLargerThanTheDiskIsSeenBeforeSimulating) {
 }
 
 TEST_F(NoRoom, MorePhotographsThanTheMemoryIsSeenBeforeReadingThem) {
-  write_large(work_ / "large.png");
-  const std::size_t count = too_many();
-  std::string text = std::to_string(count) + "\n";
-  for (std::size_t k = 0; k < count; ++k) {
-    text += "large.png " + std::to_string(k % 3) + " " + std::to_string(k % 2) + " 1\n";
+  // The header of 40 000 x 40 000 pixels of grey, of which a few at a time are in memory; no two are one file.
+  const std::string header(
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x9c\x40\0\0\x9c\x40\x08\0\0\0\0\x74\x67\x51\xd9"
+      "\0\0\0\0IDAT\0\0\0\0\0\0\0\0IEND\xae\x42\x60\x82",
+      57);
+  std::string text = "4\n";
+  for (int k = 0; k < 4; ++k) {
+    const std::string name = "large" + std::to_string(k) + ".png";
+    put_bytes(work_ / name, header + std::string(static_cast<std::size_t>(k), ' '));
+    text += name + " " + std::to_string(k % 3) + " " + std::to_string(k % 2) + " 1\n";
   }
   put_bytes(work_ / "lights.lp", text);
   expect_refusal(work_, {"solve", "--lp", (work_ / "lights.lp").string()}, 75,
