@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "calibration/ball/lamp_rays.h"
@@ -174,18 +173,30 @@ Result<void> check_lamps(const std::vector<FoundBall>& balls, const BallPhotogra
   return {};
 }
 
+/// What a lamp gives in the middle of the picture over what it gives a ball.
+double fall_off(const FoundLamp& lamp, const Vec3& ball_mm) {
+  if (!lamp.position_mm) return 1;
+  return std::pow(length(*lamp.position_mm - ball_mm) / length(*lamp.position_mm), 2);
+}
+
 /// Their strengths by the first ball that tells all of them.
-void add_strengths(BallLights& lights) {
-  for (const FoundBall& ball : lights.balls) {
+void add_strengths(const std::vector<Vec3>& centres_mm, BallLights& lights) {
+  for (std::size_t b = 0; b < lights.balls.size(); ++b) {
+    const FoundBall& ball = lights.balls[b];
     if (ball.kind == BallKind::kMirror) continue;
     if (!std::ranges::all_of(ball.lamps, [](const LampOnBall& lamp) { return lamp.found && !lamp.clipped; }))
       continue;
-    const double mean = std::accumulate(ball.lamps.begin(), ball.lamps.end(), 0.0,
-                                        [](double sum, const LampOnBall& l) { return sum + l.strength; }) /
-                        static_cast<double>(ball.lamps.size());
+    double sum = 0;
     for (std::size_t k = 0; k < ball.lamps.size(); ++k) {
-      lights.lamps[k].strength = ball.lamps[k].strength / mean;
-      lights.lamps[k].strength_sigma = ball.lamps[k].strength_sigma / mean;
+      const double there = fall_off(lights.lamps[k], centres_mm[b]);
+      lights.lamps[k].strength = there * ball.lamps[k].strength;
+      lights.lamps[k].strength_sigma = there * ball.lamps[k].strength_sigma;
+      sum += *lights.lamps[k].strength;
+    }
+    const double mean = sum / static_cast<double>(ball.lamps.size());
+    for (FoundLamp& lamp : lights.lamps) {
+      *lamp.strength /= mean;
+      lamp.strength_sigma /= mean;
     }
     return;
   }
@@ -247,14 +258,13 @@ Result<BallLights> lights_of_balls(const BallPhotographs& photographs, const Bal
   }
   for (const FoundBall& ball : lights.balls) {
     if (Result<void> ok = check_place(ball, photographs.shots.front().size()); !ok) return ok.error();
-    if (!getenv("NOSTILL"))
-      if (Result<void> ok = check_still(ball, photographs); !ok) return ok.error();
+    if (Result<void> ok = check_still(ball, photographs); !ok) return ok.error();
   }
   if (Result<void> ok = check_lamps(lights.balls, photographs); !ok) return ok.error();
   const std::vector<Vec3> centres_mm = centres_on_table(lights.balls);
   for (std::size_t k = 0; k < photographs.shots.size(); ++k)
     lights.lamps.push_back(lamp_by(lights.balls, k, centres_mm, options.ball_mm / 2));
-  add_strengths(lights);
+  add_strengths(centres_mm, lights);
   lights.apart_deg = angle_between_balls(lights.balls);
   return lights;
 }

@@ -54,7 +54,8 @@ struct FoundLamp {
   double sigma_deg = 0;
   std::optional<Vec3> position_mm;  ///< from the middle of the picture, at the height of the balls' centres
   double position_sigma_mm = 0;
-  std::optional<double> strength;  ///< relative, mean 1; none of clipped highlights
+  /// Relative, mean 1; where there is a position, in the middle of the picture. None of clipped highlights.
+  std::optional<double> strength;
   double strength_sigma = 0;
 };
 

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "capture/frames/picture_meaning.h"
 #include "core/base/files.h"
 #include "core/base/text.h"
 #include "core/image_io/image_io.h"
@@ -91,8 +92,11 @@ struct ReadShots {
 Result<ReadShots> read_shots(const std::vector<fs::path>& files, Transfer transfer) {
   ReadShots read;
   for (const fs::path& file : files) {
-    const Result<Image<float>> rgb = read_linear_image(file, transfer, Clipped::kKeep);
-    if (!rgb) return rgb.error();
+    const Result<capture::PictureMeaning> meaning = capture::meaning_of_picture(file);
+    if (!meaning) return meaning.error();
+    Result<Image<float>> rgb = read_linear_image(file, transfer, Clipped::kKeep);
+    if (!rgb) return std::move(rgb).error();
+    *rgb = as_shown(std::move(*rgb), meaning->orientation);
     if (read.photographs.shots.empty()) {
       read.size = rgb->size();
       read.by = std::max(1, (std::max(read.size.width, read.size.height) + kLongestSide - 1) / kLongestSide);
@@ -117,7 +121,7 @@ Circle shrunk(const Circle& c, double by) {
   return {(c.x - middle) / by, (c.y - middle) / by, c.radius / by};
 }
 
-/// In pixels of the files.
+/// In pixels of the photographs.
 BallLights enlarged(BallLights lights, int by) {
   for (FoundBall& ball : lights.balls) {
     ball.outline.circle = scaled(ball.outline.circle, by);
@@ -129,6 +133,11 @@ BallLights enlarged(BallLights lights, int by) {
     }
   }
   return lights;
+}
+
+bool are_placed(const BallLights& lights) {
+  return std::ranges::all_of(lights.lamps,
+                             [](const FoundLamp& lamp) { return lamp.position_mm.has_value(); });
 }
 
 std::vector<std::string> notes_of(const BallLights& lights, const BallOptions& options) {
@@ -145,6 +154,9 @@ std::vector<std::string> notes_of(const BallLights& lights, const BallOptions& o
     notes.emplace_back(unsaid ? "strengths are not known: --ball-kind says what a mirror is"
                               : "strengths are not known: highlights are clipped");
   }
+  if (are_placed(lights))
+    notes.push_back(fmt::format("positions are over what the balls lie on: solve with --mm-per-pixel {:.4g}",
+                                options.ball_mm / (2 * lights.balls.front().outline.circle.radius)));
   if (lights.apart_deg > kNearLamps_deg && !lights.lamps.front().position_mm)
     notes.push_back(
         fmt::format("balls say directions {:.1f} degrees apart: the lamps are near, and light "
@@ -154,15 +166,17 @@ std::vector<std::string> notes_of(const BallLights& lights, const BallOptions& o
 }
 
 solve::LightList list_of(const std::vector<fs::path>& photographs, const BallLights& lights,
-                         const fs::path& file) {
+                         const fs::path& file, double ball_mm) {
   solve::LightList list;
   list.file = file;
   list.kind = "RTI light file";
+  list.are_positions = are_placed(lights);
   list.have_strengths = lights.lamps.front().strength.has_value();
   for (std::size_t k = 0; k < photographs.size(); ++k) {
     const FoundLamp& lamp = lights.lamps[k];
     const double s = lamp.strength.value_or(1);
-    list.lights.push_back({photographs[k].filename().string(), photographs[k], lamp.direction, {s, s, s}});
+    const Vec3 toward = list.are_positions ? *lamp.position_mm + Vec3{0, 0, ball_mm / 2} : lamp.direction;
+    list.lights.push_back({photographs[k].filename().string(), photographs[k], toward, {s, s, s}});
   }
   return list;
 }
@@ -183,12 +197,6 @@ Result<void> write_mask(const fs::path& file, Size size, const std::vector<Found
   return write_image(file, planes, {"Y"}, {.type = SampleType::kUint8});
 }
 
-Result<void> refuse_existing(const fs::path& file) {
-  if (!is_there(file)) return {};
-  return Error{ErrorKind::kCannotCreate, "a file of that name is there", file.string(),
-               "light files and pictures are never overwritten", "choose another name with -o, or remove it"};
-}
-
 }  // namespace
 
 Result<BallsReport> lights_by_balls(const BallsOptions& options) {
@@ -196,7 +204,7 @@ Result<BallsReport> lights_by_balls(const BallsOptions& options) {
   BallsReport report;
   report.picture = output.parent_path() / kPictureName;
   for (const fs::path& file : {output, report.picture})
-    if (Result<void> ok = refuse_existing(file); !ok) return std::move(ok).error();
+    if (Result<void> ok = solve::refuse_existing(file); !ok) return std::move(ok).error();
   const Result<std::vector<fs::path>> photographs = pictures_in(options.photographs);
   if (!photographs) return photographs.error();
   const Result<std::vector<fs::path>> files = shots_of_ball(*photographs, options.ball_folder);
@@ -208,7 +216,7 @@ Result<BallsReport> lights_by_balls(const BallsOptions& options) {
   Result<BallLights> found = lights_of_balls(shots->photographs, ball);
   if (!found) return std::move(found).error();
   report.lights = enlarged(std::move(*found), shots->by);
-  report.list = list_of(*photographs, report.lights, output);
+  report.list = list_of(*photographs, report.lights, output, ball.ball_mm);
   report.notes = notes_of(report.lights, ball);
   if (options.ball_folder.empty()) {
     Result<fs::path> mask = solve::find_mask(options.photographs);

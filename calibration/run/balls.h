@@ -21,12 +21,13 @@ struct BallsOptions {
   std::filesystem::path ball_folder;  ///< of the ball alone, under the same lamps; empty: it is in them
   std::filesystem::path output;       ///< .lp to write; empty: lights.lp in `photographs`
   Transfer transfer = Transfer::kAuto;
-  BallOptions ball;  ///< pixels of the files
+  BallOptions ball;  ///< pixels of the photographs as they are shown
 };
 
 struct BallsReport {
-  BallLights lights;      ///< pixels of the files
-  solve::LightList list;  ///< `file` is what was written
+  BallLights lights;  ///< pixels of the photographs as they are shown
+  /// `file` is what was written: directions, or positions in mm over the middle of what the balls lie on.
+  solve::LightList list;
   std::filesystem::path picture;
   std::filesystem::path mask;  ///< empty: none was needed, or one was there
   std::vector<std::string> notes;
@@ -42,7 +43,7 @@ Result<BallsReport> lights_by_balls(const BallsOptions& options);
 Json json_of(const BallsReport& report);
 
 /// The greatest value of all shots with each ball's circle, and each ball near with its highlights by number.
-/// `by`: pixels of the files a pixel of `shots`.
+/// `by`: pixels of the photographs a pixel of `shots`.
 Result<void> write_ball_picture(const std::filesystem::path& file, const std::vector<Image<float>>& shots,
                                 const BallLights& lights, int by);
 

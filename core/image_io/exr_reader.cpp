@@ -46,10 +46,9 @@ std::vector<std::string> channels_of(const Imf::Header& header) {
 }
 
 /// Whether channels are colours, of a layer or of none, or grey.
-bool is_of_light(const std::vector<std::string>& channels) {
-  return channels.size() == 1 || std::ranges::any_of(channels, [](const std::string& name) {
-           return name == "R" || name == "Y" || name.ends_with(".R");
-         });
+bool are_of_light(const std::vector<std::string>& channels) {
+  return std::ranges::any_of(
+      channels, [](const std::string& name) { return name == "R" || name == "Y" || name.ends_with(".R"); });
 }
 
 /// Width and height of the data window, which may be none.
@@ -183,7 +182,7 @@ class ExrSource : public ImageSource {
       const std::vector<std::string> channels = channels_of(header);
       const bool is_deep = header.hasType() && Imf::isDeepData(header.type());
       const std::array<double, 2> size = size_of(header);
-      if (is_deep || !is_of_light(channels) || size[0] < 1 || size[1] < 1 || size[0] * size[1] > kMostPixels)
+      if (is_deep || !are_of_light(channels) || size[0] < 1 || size[1] < 1 || size[0] * size[1] > kMostPixels)
         continue;
       const std::string name = header.hasName() ? fmt::format(" \"{}\"", header.name()) : "";
       found.push_back({i,

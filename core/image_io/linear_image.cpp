@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/text.h"
 #include "core/rig/radiometry.h"
 
 namespace weft {
@@ -50,9 +51,7 @@ Error not_light(const std::string& where, std::string why, std::string remedy) {
 bool is_linear_image(const std::filesystem::path& file) {
   static constexpr std::array<const char*, 6> kExtensions = {".exr", ".tif", ".tiff",
                                                              ".png", ".jpg", ".jpeg"};
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = small_letters(file.extension().string());
   return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
@@ -92,7 +91,7 @@ Result<LightChannels> light_channels(const ImageFileInfo& info, const std::strin
   const bool is_direction = has("X") && has("Z");
   if (layers.empty() && has("Y") && (is_grey || (is_by_names && !is_direction)))
     return LightChannels{place("Y"), place("Y"), place("Y")};
-  if (names.size() == 1) return LightChannels{};
+  if (names.size() == 1 && names[0] != "Z") return LightChannels{};
   return not_light(where,
                    fmt::format("its {} channels are {}; R, G, B or one of grey were expected", names.size(),
                                fmt::join(names, ", ")),

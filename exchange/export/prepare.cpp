@@ -75,10 +75,7 @@ Result<std::string> file_name(const std::string& pattern, const Preset& preset, 
   const std::string where = fmt::format("preset {}: {}", preset.name, pattern);
   if (const Result<void> portable = check_portable_path(file); !portable)
     return unfit_export(where, fmt::format("\"{}\": {}", file, portable.error().why), "give another --name");
-  std::string folded = file;
-  std::ranges::transform(folded, folded.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (!taken.insert(folded).second)
+  if (!taken.insert(small_letters(file)).second)
     return unfit_export(where, fmt::format("\"{}\" is there already, as many disks do not tell case", file),
                         "give another --name");
   return file;

@@ -20,12 +20,6 @@ constexpr const char* kPage = "docs/exports.md";
 constexpr const char* kSchema = "weft.preset/1";
 constexpr std::size_t kMostFiles = 64;
 
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 const std::vector<std::string>& endings_of(Encoding encoding) {
   static const std::array<std::vector<std::string>, 5> endings = {
       {{".png"}, {".tif", ".tiff"}, {".exr"}, {".dds"}, {".tx"}}};
@@ -208,7 +202,7 @@ class PresetParts {
   }
 
   Result<void> add_name(const std::string& pattern, const std::string& place) {
-    const std::string example = lower(named(pattern, "cloth"));
+    const std::string example = small_letters(named(pattern, "cloth"));
     if (names_.insert(example).second && example != "export.json") return {};
     return unfit(place + ": name",
                  fmt::format("\"{}\" stands twice, as many disks do not tell case", pattern));

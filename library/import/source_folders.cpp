@@ -19,10 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string ending_of(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
+  return small_letters(file.extension().string());
 }
 
 bool is_jpeg(const fs::path& file) {

@@ -17,9 +17,9 @@ namespace weft::solve {
 namespace {
 
 // In the order in which they must be met: each is found in photographs that those before it have put right.
-constexpr std::array kConditions = {tell_veil,           mend_photosites, add_brackets,
-                                    drop_useless_lights, follow_drift,    lay_level,
-                                    follow_cloth,        find_full_scale, question_lights};
+constexpr std::array kConditions = {find_full_scale, tell_veil,    mend_photosites,
+                                    question_lights, add_brackets, drop_useless_lights,
+                                    follow_drift,    lay_level,    follow_cloth};
 
 }  // namespace
 

@@ -199,6 +199,7 @@ void convert(Developed& developed, Transfer taken, int threads) {
 
 Result<void> question_lights(const Exposures& exposures) {
   const SolvePlan& plan = exposures.plan;
+  if (plan.is_of_rig) return {};
   Conditions& conditions = exposures.photographs.conditions;
   std::vector<BlockTile> tiles = block_tiles(exposures.photographs, exposures.context.threads);
   std::optional<Suspicion> likeliest;
@@ -207,12 +208,10 @@ Result<void> question_lights(const Exposures& exposures) {
   };
   const double error = solver::left_out_error(tiles);
   std::optional<Suspicion> curve;
-  if (!plan.is_of_rig) {
-    if (plan.transfer_is_custom && plan.transfer != Transfer::kAuto)
-      curve = suspect_curve(tiles, error, plan.transfer);
-    suspect(suspect_order(tiles, error, plan.lit));
-    suspect(suspect_constant(tiles, error));
-  }
+  if (plan.transfer_is_custom && plan.transfer != Transfer::kAuto)
+    curve = suspect_curve(tiles, error, plan.transfer);
+  suspect(suspect_order(tiles, error, plan.lit));
+  suspect(suspect_constant(tiles, error));
   auto* developed = std::get_if<Developed>(&exposures.photographs.frames);
   if (curve && developed != nullptr && curve->factor > kIsSure &&
       (!likeliest || curve->factor > likeliest->factor)) {

@@ -6,11 +6,11 @@
 
 namespace weft::solve {
 
-/// Asks photographs whether their lights are what they are taken for (solver/sanity/witnesses.h): mirrored or
-/// turned lights by the curl of the slopes; the curve of the values, a light that is in all photographs and
-/// files in the order of text by how well left-out light is predicted. Linear values that nothing but custom
-/// takes for sRGB, or the other way round, are mended where that is sure; all else is a doubt, of which the
-/// likeliest alone is told.
+/// Asks photographs without a rig whether their lights are what they are taken for
+/// (solver/sanity/witnesses.h): mirrored or turned lights by the curl of the slopes; the curve of the values,
+/// a light that is in all photographs and files in the order of text by how well left-out light is predicted.
+/// Linear values that nothing but custom takes for sRGB, or the other way round, are mended where that is
+/// sure; all else is a doubt, of which the likeliest alone is told.
 Result<void> question_lights(const Exposures& exposures);
 
 }  // namespace weft::solve

@@ -41,14 +41,17 @@ std::string light_file_of(const LightList& list, const fs::path& folder) {
 }
 
 Result<void> write_new(const fs::path& file, const std::string& text) {
-  if (is_there(file)) {
-    return Error{ErrorKind::kCannotCreate, "a file of that name is there", file.string(),
-                 "light files and pictures are never overwritten", "choose another name"};
-  }
+  if (Result<void> ok = refuse_existing(file); !ok) return ok;
   return write_file(file, text);
 }
 
 }  // namespace
+
+Result<void> refuse_existing(const fs::path& file) {
+  if (!is_there(file)) return {};
+  return Error{ErrorKind::kCannotCreate, "a file of that name is there", file.string(),
+               "light files and pictures are never overwritten", "choose another name with -o, or remove it"};
+}
 
 Result<void> write_light_file(const LightList& list, const fs::path& file) {
   return write_new(file, light_file_of(list, fs::absolute(file).lexically_normal().parent_path()));

@@ -30,6 +30,9 @@ struct LightsReport {
 /// are relative to its folder. Errors of reading; kCannotCreate for a file that is there.
 Result<LightsReport> look_at_lights(const LightsOptions& options);
 
+/// kCannotCreate for a file that is there: light files and pictures are never overwritten.
+Result<void> refuse_existing(const std::filesystem::path& file);
+
 /// An RTI light file as look_at_lights() writes it. kCannotCreate for a file that is there.
 Result<void> write_light_file(const LightList& list, const std::filesystem::path& file);
 

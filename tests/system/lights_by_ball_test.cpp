@@ -42,21 +42,25 @@ class LightsByBall : public testing::Test {
       ball.radius_mm = 28;
       ball.highlight_deg = 2;
     }
-    const auto rendering = simulator::render_readings(scene, {0, 0, kFrame.width, kFrame.height});
+    write_shots(scene, folder);
+    return scene;
+  }
+  static void write_shots(const simulator::Scene& scene, const fs::path& folder) {
+    const Size size = {scene.camera.width, scene.camera.height};
+    const auto rendering = simulator::render_readings(scene, {0, 0, size.width, size.height});
     EXPECT_TRUE(rendering) << rendering.error().message();
     fs::create_directories(folder);
     for (int k = 0; k < rendering->readings.planes() / 3; ++k) {
-      Image<float> shot(kFrame, 3);
+      Image<float> shot(size, 3);
       for (int c = 0; c < 3; ++c) {
-        for (int y = 0; y < kFrame.height; ++y) {
-          for (int x = 0; x < kFrame.width; ++x)
+        for (int y = 0; y < size.height; ++y) {
+          for (int x = 0; x < size.width; ++x)
             shot(x, y, c) = static_cast<float>(std::min(1.0, 0.02 * rendering->readings(x, y, 3 * k + 1)));
         }
       }
       const std::array<View<const float>, 3> planes = {shot.plane(0), shot.plane(1), shot.plane(2)};
       EXPECT_TRUE(write_image(folder / fmt::format("shot{:02}.exr", k + 2), planes, {"R", "G", "B"}, {}));
     }
-    return scene;
   }
   static void expect_true(const Json& told, const simulator::Scene& scene) {
     const auto truth =
@@ -108,6 +112,40 @@ TEST_F(LightsByBall, ABallPhotographedFirstGoesByName) {
   EXPECT_FALSE(document["balls"][0]["as_told"]);
   EXPECT_FALSE(fs::exists(work_ / "cloth" / "mask.png")) << "no ball lies on the cloth";
   EXPECT_THAT(bytes_of(work_ / "lights.lp"), testing::HasSubstr("cloth/shot02.exr "));
+}
+
+TEST_F(LightsByBall, TwoOfAKnownSizePutTheirLampsIntoTheLightFile) {
+  constexpr double kRadius_mm = 34, kTable_mm = 5;
+  simulator::Scene scene = photograph(work_ / "one", false);
+  scene.camera.width = 640;
+  scene.effects.near_light = true;
+  for (const Vec3& centre :
+       {Vec3{-110, -14, kTable_mm + kRadius_mm}, Vec3{109, 16, kTable_mm + kRadius_mm}}) {
+    simulator::BallSettings& ball = scene.balls.emplace_back();
+    ball.centre_mm = centre;
+    ball.radius_mm = kRadius_mm;
+    ball.highlight_deg = 3;
+  }
+  write_shots(scene, work_ / "cloth");
+  const std::string fov = fmt::format("{}", degrees(2 * std::atan(640 * kPixel_mm / 2 / kDistance_mm)));
+  const Outcome told =
+      run_weft({"lights", (work_ / "cloth").string(), "--ball", "--ball-mm", "68", "--fov", fov});
+  ASSERT_EQ(told.exit_code, 0) << told.error;
+  EXPECT_THAT(told.output, testing::HasSubstr("--mm-per-pixel"));
+  const Json lights =
+      run_weft({"lights", (work_ / "cloth" / "lights.lp").string(), "--json"}).json()["lights"];
+  const auto leds = simulator::rig_of(scene)->leds.leds;
+  ASSERT_EQ(lights.size(), leds.size());
+  for (std::size_t k = 0; k < leds.size(); ++k) {
+    ASSERT_TRUE(lights[k].contains("position")) << lights[k];
+    const Json& p = lights[k]["position"];
+    const Vec3 truth = leds[k].position_mm - Vec3{0, 0, kTable_mm};
+    EXPECT_LT(length(Vec3{p[0], p[1], p[2]} - truth), 0.03 * length(truth)) << k;
+  }
+  const Outcome solve = run_weft({"solve", "--photos", (work_ / "cloth").string(), "-o",
+                                  (work_ / "maps").string(), "--mm-per-pixel", "0.5", "--no-previews"});
+  ASSERT_EQ(solve.exit_code, 0) << solve.error;
+  EXPECT_THAT(solve.output, testing::HasSubstr("near lights, in mm"));
 }
 
 TEST_F(LightsByBall, WhatCannotBeToldIsNamed) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What files of photographs say of themselves, and what is made of it when they are solved.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -177,6 +178,83 @@ TEST_F(PhotographHeaders, ADarkPhotographIsTakenFromTheOthers) {
   fs::remove_all(maps_);
   ASSERT_EQ(solve({"--ambient", "0.05"}).exit_code, 0);
   EXPECT_LT(degrees(), 0.02);
+}
+
+// Waves that cross each other aslant, so that no flip of an axis is a surface too: the height in pixels is
+// 1.5 sin(x/5 + y/9) + 1.2 cos(y/6 - x/14), y downwards.
+TEST_F(PhotographHeaders, LightsWhoseYPointsDownAreDoubtedAndFlipped) {
+  sample_.size = {160, 120};
+  sample_.write(folder_);
+  Image<float> truth(sample_.size, 3);
+  std::string directions;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Vec3 light = sample_.lights[k].direction;
+    directions += fmt::format("{} {} {}\n", light.x, -light.y, light.z);
+    change(k, [&](Image<float> image) {
+      for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+          const double a = std::cos(x / 5.0 + y / 9.0), b = std::sin(y / 6.0 - x / 14.0);
+          const Vec3 normal = normalized({-0.3 * a - 1.2 / 14 * b, 1.5 / 9 * a - 0.2 * b, 1});
+          for (int c = 0; c < 3; ++c) {
+            truth(x, y, c) = static_cast<float>(c == 0 ? normal.x : c == 1 ? normal.y : normal.z);
+            image(x, y, c) = static_cast<float>(0.5 * std::max(0.0, dot(normal, light)));
+          }
+        }
+      }
+      return image;
+    });
+  }
+  const std::array<View<const float>, 3> planes = {truth.plane(0), truth.plane(1), truth.plane(2)};
+  ASSERT_TRUE(write_image(folder_ / "normal_gt.exr", planes, {"X", "Y", "Z"}, {}));
+  fs::remove(folder_ / "light_intensities.txt");
+  put_bytes(folder_ / "light_directions.txt", directions);
+  const Outcome doubted = solve();
+  ASSERT_EQ(doubted.exit_code, 0) << doubted.error;
+  EXPECT_NE(doubted.error.find("The lights are mirrored"), std::string::npos) << doubted.error;
+  EXPECT_NE(doubted.error.find("--flip y"), std::string::npos) << doubted.error;
+  EXPECT_GT(degrees(), 10);
+  fs::remove_all(maps_);
+  const Outcome flipped = solve({"--flip", "y"});
+  ASSERT_EQ(flipped.exit_code, 0) << flipped.error;
+  EXPECT_LT(degrees(), 0.01);
+  EXPECT_EQ(flipped.error.find("mirrored"), std::string::npos) << flipped.error;
+}
+
+TEST_F(PhotographHeaders, LinearValuesOfEightBitsAreTakenAsLinearWhereThatIsSure) {
+  sample_.size = {160, 120};
+  sample_.type = SampleType::kUint8;
+  sample_.write(folder_);
+  const Outcome run = solve();
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_NE(run.output.find("values are linear, since left-out light"), std::string::npos) << run.output;
+  EXPECT_LT(degrees(), 0.5);
+}
+
+TEST_F(PhotographHeaders, ValuesThatStopBelowFullScaleAreClipped) {
+  sample_.size = {160, 120};
+  sample_.write(folder_);
+  float full = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Result<LoadedImage> read = read_image(photograph(k));
+    ASSERT_TRUE(read) << read.error().message();
+    for (int y = 0; y < 120; ++y) {
+      for (int x = 0; x < 160; ++x) full = std::max(full, 0.9F * read->planes(x, y, 1));
+    }
+  }
+  const auto clip = [full](Image<float> image) {
+    for (int p = 0; p < image.planes(); ++p) {
+      for (int y = 0; y < image.height(); ++y) {
+        float* row = image.plane(p).row(y);
+        std::transform(row, row + image.width(), row, [full](float v) { return std::min(v, full); });
+      }
+    }
+    return image;
+  };
+  for (std::size_t k = 0; k < 6; ++k) change(k, clip);
+  const Outcome run = solve();
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_NE(run.output.find("of the files' full scale is taken as clipped"), std::string::npos) << run.output;
+  EXPECT_LT(degrees(), 0.05);
 }
 
 TEST_F(PhotographHeaders, LookSaysWhatAFileMeans) {

@@ -16,17 +16,12 @@
 #include "app/server/http/cookies.h"
 #include "app/server/http/path_pattern.h"
 #include "core/base/files.h"
+#include "core/base/text.h"
 
 namespace weft::app {
 namespace {
 
 constexpr std::size_t kLeastTokenBytes = 16, kMostTokenBytes = 512;
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 /// The name in "name:port", "[v6]:port" or either without a port.
 std::string name_in(const std::string& host) {
@@ -41,8 +36,8 @@ bool is_address(const std::string& name) {
 }
 
 bool is_our_name(const std::string& host, const GuardRules& rules) {
-  const std::string name = lower(name_in(host)), ours = lower(rules.listening_host);
-  const auto is_name = [&](const std::string& each) { return lower(each) == name; };
+  const std::string name = small_letters(name_in(host)), ours = small_letters(rules.listening_host);
+  const auto is_name = [&](const std::string& each) { return small_letters(each) == name; };
   if (std::ranges::any_of(rules.names, is_name)) return true;
   // A page's own name can be made to lead here, a bare address cannot.
   const bool on_all_addresses = ours == "0.0.0.0" || ours == "::";
@@ -50,9 +45,10 @@ bool is_our_name(const std::string& host, const GuardRules& rules) {
 }
 
 bool is_our_origin(const std::string& origin, const std::string& host, const GuardRules& rules) {
-  return lower(origin) == "http://" + lower(host) ||
-         std::ranges::any_of(rules.origins,
-                             [&](const std::string& each) { return lower(each) == lower(origin); });
+  return small_letters(origin) == "http://" + small_letters(host) ||
+         std::ranges::any_of(rules.origins, [&](const std::string& each) {
+           return small_letters(each) == small_letters(origin);
+         });
 }
 
 /// In a time that does not tell how much of it is right.
@@ -119,7 +115,7 @@ bool is_fetched_from_elsewhere(const Visitor& visitor, const GuardRules& rules) 
 }
 
 bool is_json(const std::string& content_type) {
-  const std::string type = lower(content_type.substr(0, content_type.find(';')));
+  const std::string type = small_letters(content_type.substr(0, content_type.find(';')));
   return type.substr(0, type.find_last_not_of(" \t") + 1) == "application/json";
 }
 

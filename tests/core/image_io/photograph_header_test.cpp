@@ -116,7 +116,7 @@ void write_parts(const std::filesystem::path& file, const std::vector<ExrPart>& 
 
 TEST(PhotographHeader, AnExrIsReadFromTheOnlyPartThatHasColours) {
   const ScratchFolder folder;
-  write_parts(folder / "a.exr", {{"depth", 4, 2, {"Z", "id"}}, {"beauty", 4, 2, {"R", "G", "B"}}});
+  write_parts(folder / "a.exr", {{"depth", 4, 2, {"Z"}}, {"beauty", 4, 2, {"R", "G", "B"}}});
   const Result<LoadedImage> read = read_image(folder / "a.exr");
   ASSERT_TRUE(read) << read.error().message();
   EXPECT_EQ(read->info.channels, (std::vector<std::string>{"R", "G", "B"}));
@@ -149,6 +149,7 @@ TEST(PhotographHeader, LightIsFoundByTheNamesOfChannels) {
                {{"X", "Y", "Z"}, {}},
                {{"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}, {}},
                {{"Z", "id"}, {}},
+               {{"Z"}, {}},
                {{"R", "G", "B", "channel3"}, {0, 1, 2}, "tiff"},
                {{"R", "G", "B", "channel3", "channel4"}, {}, "tiff"},
                {{"R", "G"}, {}, "tiff"}};
