@@ -188,7 +188,7 @@ void describe(Fields& fields, SolveRequest& r) {
                r.photos.dark);
   fields.value({.name = "mm_per_pixel",
                 .says = "Of the cloth, mm; positions of lights are then near lights, in mm over its middle",
-                .range = kAboveZero,
+                .range = {1e-4, 100},
                 .said = Said::kAtThisMachine},
                r.photos.mm_per_pixel);
   fields.value({.name = "fov_deg",

@@ -19,6 +19,12 @@ namespace fs = std::filesystem;
 constexpr const char* kPhotographs = "photographs";
 constexpr const char* kPixel = "mm_per_pixel";
 
+constexpr double kLeastPixel_mm = 1e-4, kMostPixel_mm = 100;  // as describe_grid() has it
+
+bool is_pixel(const Json& mm) {
+  return mm.is_number() && mm.get<double>() >= kLeastPixel_mm && mm.get<double>() <= kMostPixel_mm;
+}
+
 // ./NAME-solve/<id> is called NAME.
 std::string name_of_solve(const fs::path& folder, const std::string& id) {
   constexpr std::string_view kEnding = "-solve";
@@ -75,8 +81,14 @@ Result<Session> read_solved(const fs::path& folder) {
                  fmt::format("name the session, and of its solves this one with --solve {}", facts->id)};
   }
   session.document = {{kPhotographs, Json::object()}};
-  if (const auto mm = document->find(kPixel); mm != document->end() && mm->is_number())
+  if (const auto mm = document->find(kPixel); mm != document->end()) {
+    if (!is_pixel(*mm)) {
+      return Error{ErrorKind::kBadData, "the size of a pixel is none", file.string(),
+                   fmt::format("{} is {}", kPixel, mm->dump()),
+                   fmt::format("write mm there, {:g} to {:g}, or take it out", kLeastPixel_mm, kMostPixel_mm)};
+    }
     session.document[kPhotographs][kPixel] = *mm;
+  }
   return session;
 }
 

@@ -19,7 +19,8 @@ inline constexpr double kAssumedMmPerPixel = 0.1;
 
 /// Reads a session. A folder that holds the solve of photographs under distant lights is one, too: of these
 /// photographs, called as the folder is, complete, without a calibration, with that one solve. Errors of
-/// read_session(); kUsage for the solve of a session, and for a folder that holds solves of photographs.
+/// read_session(); kBadData for a pixel of no size; kUsage for the solve of a session, and for a folder that
+/// holds solves of photographs.
 Result<Session> read_solved(const std::filesystem::path& folder);
 
 /// A pixel of photographs that no calibrated camera took.

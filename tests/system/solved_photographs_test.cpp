@@ -215,5 +215,15 @@ TEST_F(SolvedPhotographs, RefuseWhatNeedsARig) {
                  {"a solve of photographs alone"}, {.folder = work_.path()});
 }
 
+TEST_F(SolvedPhotographs, WithAPixelOfNoSizeAreRefused) {
+  const std::string document = bytes_of(solve_ / "solve.json");
+  for (const char* pixel : {"-1", "0", "1e300", "\"wide\""}) {
+    put_bytes(solve_ / "solve.json",
+              "{ \"mm_per_pixel\": " + std::string(pixel) + "," + document.substr(document.find('{') + 1));
+    expect_refusal(work_, {"rectify", solve_.string(), "-q"}, 65,
+                   {"the size of a pixel is none", "solve.json", "mm_per_pixel is", "take it out"});
+  }
+}
+
 }  // namespace
 }  // namespace weft::test
