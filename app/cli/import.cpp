@@ -8,23 +8,20 @@
 #include <string>
 #include <utility>
 
+#include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
-#include "app/cli/options.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verb.h"
 #include "core/base/files.h"
+#include "core/describe/field_check.h"
+#include "library/import/import_request.h"
 
 namespace weft::app {
 namespace {
 
 constexpr std::size_t kMostLeftOver = 20;  // lines
 constexpr double kManyTimes = 999;
-
-struct ImportArguments {
-  library::ImportOptions import;
-  bool yes = false, dry_run = false;
-};
 
 std::string sure_words(const std::optional<double>& sure) {
   if (!sure) return "";
@@ -83,15 +80,15 @@ void print_session(const library::ProposedSession& session) {
 void print_import(const library::ImportProposal& plan) {
   for (const library::ProposedSession& session : plan.sessions) print_session(session);
   for (const library::ProposedPhotographs& each : plan.photographs) {
-    const std::string name = each.folder.filename().string();
+    const std::string name = each.session.folder.filename().string();
     if (each.refusal) {
       print(fmt::format("{}: refused. {}", name, each.refusal->message()));
-    } else {
-      print(fmt::format("{}: {} photographs under distant lights of {}{}", name, each.photos.lit.size(),
-                        each.source.string(),
-                        each.state == library::ImportState::kThere ? ", is there already" : ""));
-      for (const std::string& assumed : each.photos.assumed) print("  " + assumed);
+      continue;
     }
+    print(fmt::format(
+        "{}: {} photographs of {}{}, \"{}\"", name, each.lights.lights.size(), each.source.string(),
+        each.state == library::ImportState::kThere ? ", is there already" : "", each.session.fabric));
+    for (const std::string& assumed : each.assumed) print("  " + assumed);
   }
   const std::size_t shown = std::min(plan.left_over.size(), kMostLeftOver);
   for (std::size_t i = 0; i < shown; ++i)
@@ -116,7 +113,8 @@ Result<void> ask(const library::ImportProposal& plan) {
                answer ? "the answer was no" : "there was no answer", "say --yes, or --dry-run to look only"};
 }
 
-Result<int> import_folders(ImportArguments& a, const CommonArguments& common) {
+Result<int> import_folders(library::ImportRequest& a, const CommonArguments& common) {
+  if (Result<void> fits = check_fields(a); !fits) return std::move(fits).error();
   const std::filesystem::path usual_rig = find_rig({});
   if (a.import.rig.empty() && a.import.calibration.empty() && is_there(usual_rig)) a.import.rig = usual_rig;
   if (common.json && !a.yes && !a.dry_run) {
@@ -125,7 +123,7 @@ Result<int> import_folders(ImportArguments& a, const CommonArguments& common) {
   }
   const Result<library::ImportProposal> plan = [&] {
     ProgressLine line(common.quiet);
-    return library::plan_import(a.import, {common.threads, stop_on_signal(), line.callback()});
+    return library::plan_import(a.options(), {common.threads, stop_on_signal(), line.callback()});
   }();
   if (!plan) return plan.error();
   if (!common.json) print_import(*plan);
@@ -143,6 +141,7 @@ Result<int> import_folders(ImportArguments& a, const CommonArguments& common) {
     Json document = json_of(*plan);
     document["imported"] = goes_on ? plan->count(library::ImportState::kNew) : 0;
     print_json(document);
+    if (const std::optional<Error> refusal = plan->first_refusal()) note(refusal->message());
   } else if (goes_on) {
     print(
         fmt::format("{} imported into {}", plan->count(library::ImportState::kNew), plan->archive.string()));
@@ -151,35 +150,8 @@ Result<int> import_folders(ImportArguments& a, const CommonArguments& common) {
 }
 
 Run add_import(Options& options) {
-  const auto a = std::make_shared<ImportArguments>();
-  library::ImportOptions& import = a->import;
-  options
-      .add("folders", &import.folders,
-           "Folders of raws (NEF, CR2, DNG ...), linear TIFF or EXR frames, or photographs with a light file")
-      .required();
-  options.add("--rig", &import.rig,
-              "Rig file: its calibration, its folder of sessions, its cloth height, where none is named");
-  options.add("--calibration", &import.calibration,
-              "Calibration folder of the rig that took the photographs");
-  options.add("-o,--output", &import.archive, "Archive: the folder for sessions; default the rig's");
-  options.add("--pattern", &import.pattern,
-              "What names say: {session}/{fabric}_{led}.{ext}; also {index}, {any}; LED 0 or dark is no LED");
-  options.add_choice("--order", &import.order, library::kFrameOrderNames,
-                     "What tells LEDs: auto (numbers in names, else times and names where they agree), time, "
-                     "name, light (the LED that explains a frame's brightness)");
-  options.add_choice("--link", &import.link, library::kFrameLinkNames,
-                     "How a session has its frames: hard (links), copy, symbolic");
-  options.add("--gap", &import.gap_s, "Seconds between two sessions in one folder")
-      .above_zero()
-      .shows_default();
-  options.add(
-      "--height", &import.cloth_height_mm,
-      "Of the cloth's surface above the table, mm, where no import.toml says it; default the rig's, or 0");
-  options.add_flag("--missing", &import.takes_missing,
-                   "Take sessions that lack LEDs, where names or the light tell which");
-  const Option dry_run =
-      options.add_flag("--dry-run", &a->dry_run, "Print the table of what was decided, and import nothing");
-  options.add_flag("--yes", &a->yes, "Import without a question").excludes(dry_run);
+  const auto a = std::make_shared<library::ImportRequest>();
+  add_options(options, *a);
   return [a](const CommonArguments& common) { return import_folders(*a, common); };
 }
 

@@ -284,6 +284,7 @@ Run add_solve(Options& options) {
   add_options(options, *a);
   return [a](const CommonArguments& common) {
     a->photos.lights = a->session.leds;
+    a->photos.reading = a->session.reading;
     a->options.method = a->method_asked();
     return solve(*a, common);
   };

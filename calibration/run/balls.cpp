@@ -140,7 +140,8 @@ bool are_placed(const BallLights& lights) {
                              [](const FoundLamp& lamp) { return lamp.position_mm.has_value(); });
 }
 
-std::vector<std::string> notes_of(const BallLights& lights, const BallOptions& options) {
+std::vector<std::string> notes_of(const BallLights& lights, const BallOptions& options,
+                                  const std::optional<double>& mm_per_pixel) {
   std::vector<std::string> notes;
   if (!(options.fov_deg > 0))
     notes.emplace_back("no --fov: directions lean by the angle under which the camera sees the ball");
@@ -154,9 +155,9 @@ std::vector<std::string> notes_of(const BallLights& lights, const BallOptions& o
     notes.emplace_back(unsaid ? "strengths are not known: --ball-kind says what a mirror is"
                               : "strengths are not known: highlights are clipped");
   }
-  if (are_placed(lights))
+  if (mm_per_pixel)
     notes.push_back(fmt::format("positions are over what the balls lie on: solve with --mm-per-pixel {:.4g}",
-                                options.ball_mm / (2 * lights.balls.front().outline.circle.radius)));
+                                *mm_per_pixel));
   if (lights.apart_deg > kNearLamps_deg && !lights.lamps.front().position_mm)
     notes.push_back(
         fmt::format("balls say directions {:.1f} degrees apart: the lamps are near, and light "
@@ -217,11 +218,14 @@ Result<BallsReport> lights_by_balls(const BallsOptions& options) {
   if (!found) return std::move(found).error();
   report.lights = enlarged(std::move(*found), shots->by);
   report.list = list_of(*photographs, report.lights, output, ball.ball_mm);
-  report.notes = notes_of(report.lights, ball);
+  if (are_placed(report.lights))
+    report.mm_per_pixel = ball.ball_mm / (2 * report.lights.balls.front().outline.circle.radius);
+  report.notes = notes_of(report.lights, ball, report.mm_per_pixel);
   if (options.ball_folder.empty()) {
     Result<fs::path> mask = solve::find_mask(options.photographs);
     if (!mask) return std::move(mask).error();
-    report.mask = mask->empty() ? options.photographs / "mask.png" : fs::path();
+    const fs::path& folder = options.mask_folder.empty() ? options.photographs : options.mask_folder;
+    report.mask = mask->empty() ? folder / "mask.png" : fs::path();
     if (!mask->empty())
       report.notes.push_back(fmt::format("{} is there: paint the ball black in it", mask->string()));
   }

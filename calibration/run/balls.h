@@ -20,6 +20,7 @@ struct BallsOptions {
   std::filesystem::path photographs;  ///< their folder
   std::filesystem::path ball_folder;  ///< of the ball alone, under the same lamps; empty: it is in them
   std::filesystem::path output;       ///< .lp to write; empty: lights.lp in `photographs`
+  std::filesystem::path mask_folder;  ///< where mask.png goes; empty: to `photographs`
   Transfer transfer = Transfer::kAuto;
   BallOptions ball;  ///< pixels of the photographs as they are shown
 };
@@ -30,6 +31,8 @@ struct BallsReport {
   solve::LightList list;
   std::filesystem::path picture;
   std::filesystem::path mask;  ///< empty: none was needed, or one was there
+  /// What one pixel is on what the balls lie on, where lamps have positions.
+  std::optional<double> mm_per_pixel;
   std::vector<std::string> notes;
 };
 

@@ -8,21 +8,10 @@
 
 #include "core/base/result.h"
 #include "core/image/image.h"
+#include "core/image/transfer.h"
 #include "core/image_io/image_io.h"
 
 namespace weft {
-
-/// How the values of a developed photograph follow light.
-enum class Transfer {
-  kAuto,    ///< as the file says; where it does not, 16-bit and float files are linear, 8-bit ones sRGB
-  kLinear,  ///< proportional to light
-  kSrgb,    ///< IEC 61966-2-1
-};
-/// As the command line and documents have them.
-inline constexpr std::array<const char*, 3> kTransferNames = {"auto", "linear", "srgb"};
-constexpr const char* name_of(Transfer transfer) {
-  return kTransferNames[static_cast<std::size_t>(transfer)];
-}
 
 /// What becomes of the full-scale values of integer files, which stand for anything brighter too.
 enum class Clipped {

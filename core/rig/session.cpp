@@ -35,8 +35,11 @@ void describe(Fields& fields, Shot& s) {
   fields.choice({"role", "What the photograph is for", kAnyNumber, kMustSay}, s.role, kRoles);
   fields.value({"file", "Relative to the session", kAnyNumber, kMustSay}, s.file);
   fields.value({"sha256", "Of the file's bytes"}, s.sha256);
-  fields.value({"exposure_us", "How long it was exposed, microseconds", kAboveZero, kMustSay}, s.exposure_us);
-  fields.value({"iso", "Speed", kAboveZero, kMustSay}, s.iso);
+  fields.value(
+      {"exposure_us", "How long it was exposed, microseconds; 0: not known, of photographs that no rig took",
+       kNotNegative, kMustSay},
+      s.exposure_us);
+  fields.value({"iso", "Speed; 0: not known", kNotNegative, kMustSay}, s.iso);
   fields.value({"f_number", "Aperture", kAnyNumber, kMustSay}, s.f_number);
   fields.value({"time", "When, ISO 8601", kAnyNumber, kUnlessEmpty}, s.time);
   fields.choice({"polariser", "How the film before the camera stands to that before the lights", kAnyNumber,
@@ -76,6 +79,9 @@ void describe(Fields& fields, Session& s) {
   fields.list({"shots", "One an exposure", kAnyNumber, kMustSay}, s.shots);
   fields.object({"films", "Of shots that were taken through polarisers", kAnyNumber, kUnlessEmpty}, s.films);
   fields.object({"pose", "Of a cloth that does not lie flat on the table", kAnyNumber, kUnlessEmpty}, s.pose);
+  fields.object(
+      {"photographs", "That no rig took: how they and their lights are read", kAnyNumber, kUnlessEmpty},
+      s.photographs);
 }
 
 namespace {
@@ -88,6 +94,8 @@ Result<void> check_shots(const Session& session, const std::string& where) {
   const Shot* first = nullptr;
   int darks = 0;
   for (const Shot& shot : session.shots) {
+    if (session.is_of_rig() && (shot.exposure_us == 0 || shot.iso == 0))
+      return refuse(fmt::format("{} has no exposure or no ISO", shot.file), "write what it was taken with");
     if (shot.superseded_by) {
       const auto other = std::ranges::find(session.shots, *shot.superseded_by, &Shot::index);
       if (other == session.shots.end() || other->index <= shot.index || other->led != shot.led ||
@@ -107,6 +115,7 @@ Result<void> check_shots(const Session& session, const std::string& where) {
       return refuse("there are two dark shots", "keep one of them");
     }
     if (first == nullptr) first = &shot;
+    if (!session.is_of_rig()) continue;
     if (shot.exposure_us != first->exposure_us || shot.iso != first->iso ||
         shot.f_number != first->f_number) {
       return refuse(fmt::format("{} was taken at {}, ISO {}, f/{} and {} at {}, ISO {}, f/{}", first->file,
@@ -180,6 +189,8 @@ Result<void> write_session(const Session& session) {
     document["schema"] = fmt::format("{}/1.3", kSessionSchema);
   if (session.pose != ClothPose() && !document.contains("pose"))
     document["schema"] = fmt::format("{}/1.4", kSessionSchema);
+  if (session.photographs && !document.contains("photographs"))
+    document["schema"] = fmt::format("{}/1.6", kSessionSchema);
   Session written = session;
   written.document = std::move(document);
   Json json;

@@ -10,6 +10,7 @@
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "core/rig/cloth_pose.h"
+#include "core/rig/photo_reading.h"
 
 namespace weft {
 
@@ -43,12 +44,12 @@ struct Films {
 /// One exposure of a session.
 struct Shot {
   int index = 0;  ///< order of capture, from 0
-  int led = 0;    ///< LED that was lit, from 1; 0 is none
+  int led = 0;    ///< LED or light that was lit, from 1; 0 is none
   ShotRole role = ShotRole::kLit;
-  std::string file;    ///< relative to the session, "raw/03_led03.dng"
-  std::string sha256;  ///< of the file's bytes
-  double exposure_us = 0;
-  double iso = 100;
+  std::string file;        ///< relative to the session, "raw/03_led03.dng"
+  std::string sha256;      ///< of the file's bytes
+  double exposure_us = 0;  ///< 0: nobody knows, of photographs that no rig took
+  double iso = 100;        ///< likewise
   double f_number = 0;
   std::string time;  ///< ISO 8601, or empty
   Polariser polariser = Polariser::kNone;
@@ -68,10 +69,14 @@ struct Session {
   std::string state = "complete";  ///< "capturing" until the last frame has landed
   std::vector<Shot> shots;
   Films films;
+  /// How photographs that no rig took, and their lights, are read: they were brought along, and there is no
+  /// calibration. None: a rig took them.
+  std::optional<PhotoReading> photographs;
   Json document;  ///< as read, so that fields of newer minor versions survive a rewrite
 
   std::filesystem::path path_of(const Shot& shot) const { return folder / shot.file; }
   std::filesystem::path calibration_folder() const { return folder / "calibration"; }
+  bool is_of_rig() const { return !photographs; }
   /// The dark shot, or null.
   const Shot* dark() const;
   /// The lit shots in order of their LED, with the polariser as the first of them has it.
@@ -81,8 +86,8 @@ struct Session {
 void describe(Fields& fields, Session& session);
 
 /// Reads and checks session.json: files stay inside the folder, no LED is lit twice with one polariser, all
-/// lit and dark shots share exposure, ISO and aperture, what supersedes a shot is there and is of its LED and
-/// role. Superseded shots count for nothing else. The frames themselves are not opened.
+/// lit and dark shots of a rig share exposure, ISO and aperture, what supersedes a shot is there and is of
+/// its LED and role. Superseded shots count for nothing else. The frames themselves are not opened.
 Result<Session> read_session(const std::filesystem::path& folder);
 
 /// Replaces session.json (aside, synced, renamed).

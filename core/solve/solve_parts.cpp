@@ -35,6 +35,7 @@ void describe(Fields& fields, SolveInput& i) {
                i.orientation);
   fields.value({"mm_per_pixel", "Of the cloth, under near lights", {}, kUnlessEmpty}, i.mm_per_pixel);
   fields.value({"fov_deg", "Of the picture's width, under near lights", {}, kUnlessEmpty}, i.fov_deg);
+  fields.value({"flip", "What was done to directions of lights", {}, kUnlessEmpty}, i.flip);
   fields.value({"dark", "SHA-256 of the one with all lamps off", {}, kUnlessEmpty}, i.dark);
   fields.value({"ambient", "Light that was taken from all, a share of full scale", {}, kUnlessEmpty},
                i.ambient);

@@ -36,8 +36,8 @@ struct DistantPhotograph {
 };
 void describe(Fields& fields, DistantPhotograph& photograph);
 
-/// All that the id depends on besides method and compression. Of a session the first fields, else those from
-/// `photographs` on.
+/// All that the id depends on besides method and compression. Of a session of a rig the first fields, else
+/// those from `photographs` on.
 struct SolveInput {
   std::optional<std::string> session = {}, calibration = {};  ///< fabric, and the calibration's id
   std::optional<double> cloth_height_mm = {};
@@ -46,6 +46,7 @@ struct SolveInput {
   std::vector<DistantPhotograph> photographs = {};
   std::string transfer = {}, mask = {};  ///< by name; SHA-256
   std::optional<int> orientation = {};   ///< that they were turned by; none: as they are stored
+  std::string flip = {};                 ///< what was done to directions of lights; empty: nothing
   std::string dark = {};                 ///< SHA-256 of the one with all lamps off
   std::optional<double> ambient = {};    ///< light that was taken from all, a share of full scale
   std::optional<double> mm_per_pixel = {}, fov_deg = {};  ///< of the cloth, of the picture's width

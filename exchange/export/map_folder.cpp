@@ -57,7 +57,7 @@ Result<fs::path> set_of_session(const MapFolderWish& wish) {
   const std::vector<material::SessionSet> sets = material::sets_of(solves);
   if (const material::SessionSet* set = material::set_to_use(solves, sets, wish.wanted))
     return set->product.folder;
-  if (solves.is_of_photographs) return wish.input;
+  if (solves.is_lone) return wish.input;
   return Error{ErrorKind::kNoInput, fmt::format("there is no complete {}", material::kMapsProduct.noun),
                (wish.input / "maps").string(), "no folder there holds a maps.json that can be read",
                fmt::format("make it first with weft maps {}", wish.input.string())};
@@ -293,13 +293,13 @@ Result<Json> provenance_of(const MapFolder& folder) {
   if (!folder.stale.empty()) json["stale"] = folder.stale;
   if (!folder.session) return json;
   const Session& session = *folder.session;
-  if (!solve::photographed_pixel(session)) {
+  if (!solve::is_lone_solve(session)) {
     const Result<std::string> session_digest = sha256_of_file(session.folder / "session.json");
     if (!session_digest) return session_digest.error();
     json["session"] = {{"name", session.folder.filename().string()},
                        {"fabric", session.fabric},
                        {"sha256", *session_digest}};
-    json["calibration"] = session.calibration_id;
+    if (session.is_of_rig()) json["calibration"] = session.calibration_id;
   }
   json["raws"] = Json::array();
   for (const Shot& shot : session.shots)

@@ -104,7 +104,7 @@ Result<void> Making::check_solve_of_photographs(const ChainLink& link) const {
 Result<void> Making::make_solve() {
   const ChainLink& link = before_.link("solve");
   solve_ = link.id;
-  if (solve::photographed_pixel(session_)) return check_solve_of_photographs(link);
+  if (solve::is_lone_solve(session_)) return check_solve_of_photographs(link);
   const bool is_fresh = link.freshness == Freshness::kFresh;
   const bool is_good_enough = options_.wish.to_deg && link.mean_deg && link.solved &&
                               deg_of_whole(*link.mean_deg, *link.solved) <= *options_.wish.to_deg;

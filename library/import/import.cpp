@@ -11,7 +11,8 @@
 #include "capture/scan/journal.h"
 #include "core/base/files.h"
 #include "core/base/product.h"
-#include "library/import/photographs_import.h"
+#include "solve/input/session_photos.h"
+#include "solve/run/look_at_lights.h"
 
 namespace weft::library {
 namespace {
@@ -96,29 +97,30 @@ Result<void> make_session(const ProposedSession& planned, const ImportProposal& 
 }
 
 Result<void> make_photographs(const ProposedPhotographs& planned, const ImportProposal& plan) {
-  capture::remove_abandoned(planned.folder);
-  PartialFolder aside(planned.folder);
+  capture::remove_abandoned(planned.session.folder);
+  PartialFolder aside(planned.session.folder);
   std::uint64_t bytes = std::uint64_t{1} << 20;
-  const std::vector<fs::path> sources = planned.photos.files();
-  for (const fs::path& file : sources) bytes += plan.link == FrameLink::kCopy ? bytes_of(file) : 0;
+  for (const fs::path& file : planned.files) bytes += plan.link == FrameLink::kCopy ? bytes_of(file) : 0;
   if (Result<void> ok = begin(aside, bytes); !ok) return ok;
-  const PhotographTexts texts = texts_of(planned);
-  const std::vector<std::string> names = stored_names(planned.photos);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::string& sha256 = texts.facts.photographs[i].sha256;
-    if (Result<void> ok = bring(sources[i], aside.path() / names[i], plan.link, sha256); !ok) return ok;
+  Session session = planned.session;
+  session.folder = aside.path();
+  const fs::path folder = session.folder / solve::kPhotographsFolder;
+  if (Result<void> ok = make_writable_folder(folder); !ok) return ok;
+  for (std::size_t i = 0; i < planned.files.size(); ++i) {
+    const Shot& shot = session.shots[i];
+    if (Result<void> ok = bring(planned.files[i], session.path_of(shot), plan.link, shot.sha256); !ok)
+      return ok;
   }
-  if (!planned.photos.mask.empty()) {
-    Result<void> ok = bring(planned.photos.mask, aside.path() / "mask.png", plan.link, texts.facts.mask);
-    if (!ok) return ok;
-  }
-  const std::array<std::pair<const char*, const std::string*>, 3> files = {
-      {{"filenames.txt", &texts.names},
-       {"light_directions.txt", &texts.directions},
-       {"light_intensities.txt", &texts.intensities}}};
-  for (const auto& [name, text] : files)
-    if (Result<void> ok = write_file(aside.path() / name, *text); !ok) return ok;
-  if (Result<void> ok = write_json(aside.path() / "photographs.json", json_of(texts.facts)); !ok) return ok;
+  solve::LightList lights = planned.lights;
+  for (solve::ListedLight& light : lights.lights) light.photograph = folder / light.photograph;
+  if (Result<void> ok = write_light_file(lights, folder / solve::kLightsFile); !ok) return ok;
+  std::error_code failed;
+  if (!planned.mask.empty())
+    fs::copy_file(planned.mask, folder / ("mask" + planned.mask.extension().string()), failed);
+  if (!failed && !planned.picture.empty())
+    fs::copy_file(planned.picture, session.folder / "balls.png", failed);
+  if (failed) return cannot_write(folder, failed.value());
+  if (Result<void> ok = write_session(session); !ok) return ok;
   return aside.publish();
 }
 

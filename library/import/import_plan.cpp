@@ -114,8 +114,8 @@ class SessionPlanner {
     return plan;
   }
 
-  /// Whether a description spoke of any session.
-  bool has_used(const fs::path& file) const { return used_.contains(file); }
+  /// Descriptions that spoke of any session.
+  const std::set<fs::path>& used() const { return used_; }
 
  private:
   Result<void> fill(ProposedSession& plan, SourceGroup group, const std::vector<fs::path>& descriptions,
@@ -245,9 +245,7 @@ Result<void> check_disks(const ImportProposal& plan) {
   }
   for (const ProposedPhotographs& photographs : plan.photographs) {
     if (photographs.state != ImportState::kNew) continue;
-    std::vector<fs::path> files = photographs.photos.files();
-    if (!photographs.photos.mask.empty()) files.emplace_back(photographs.photos.mask);
-    for (const fs::path& file : files)
+    for (const fs::path& file : photographs.files)
       if (!are_on_one_disk(file, plan.archive)) return refuse(file);
   }
   return {};
@@ -255,14 +253,21 @@ Result<void> check_disks(const ImportProposal& plan) {
 
 /// One session a target: whoever comes second is refused.
 void refuse_twins(ImportProposal& plan) {
+  const auto refuse = [](ProposedSession& second, const fs::path& first) {
+    second.state = ImportState::kRefused;
+    second.refusal = Error{ErrorKind::kBadData, "two sessions would have one name", second.source.string(),
+                           fmt::format("{} has it too", first.string()),
+                           "rename one of the folders, or write {session} in --pattern"};
+  };
+  for (ProposedSession& session : plan.sessions) {
+    for (const ProposedPhotographs& each : plan.photographs)
+      if (!session.refusal && session.session.folder == each.session.folder) refuse(session, each.source);
+  }
   for (std::size_t i = 0; i < plan.sessions.size(); ++i) {
     for (std::size_t j = i + 1; j < plan.sessions.size(); ++j) {
       ProposedSession& second = plan.sessions[j];
       if (second.refusal || second.session.folder != plan.sessions[i].session.folder) continue;
-      second.state = ImportState::kRefused;
-      second.refusal = Error{ErrorKind::kBadData, "two sessions would have one name", second.source.string(),
-                             fmt::format("{} has it too", plan.sessions[i].source.string()),
-                             "rename one of the folders, or write {session} in --pattern"};
+      refuse(second, plan.sessions[i].source);
     }
   }
 }
@@ -277,7 +282,8 @@ Result<GroupingOptions> grouping_by(const ImportOptions& options) {
 }
 
 Result<void> plan_sessions(const ImportOptions& options, const ImportPlace& place, GroupingOptions grouping,
-                           SourceFolders& found, const JobContext& context, ImportProposal& plan) {
+                           SourceFolders& found, const JobContext& context, ImportProposal& plan,
+                           std::set<fs::path>& described) {
   if (found.frames.empty()) return {};
   const Result<Calibration> calibration = calibration_for(place);
   if (!calibration) return calibration.error();
@@ -299,8 +305,7 @@ Result<void> plan_sessions(const ImportOptions& options, const ImportPlace& plac
     plan.sessions.push_back(std::move(*session));
   }
   refuse_twins(plan);
-  for (const fs::path& file : found.descriptions)
-    if (!planner.has_used(file)) found.left_over.push_back({file, "it speaks of no session"});
+  described.insert(planner.used().begin(), planner.used().end());
   return {};
 }
 
@@ -337,23 +342,34 @@ Result<ImportProposal> plan_import(const ImportOptions& options, const JobContex
   if (!place) return place.error();
   Result<GroupingOptions> grouping = grouping_by(options);
   if (!grouping) return std::move(grouping).error();
-  Result<SourceFolders> found = look_into(options.folders);
-  if (!found) return std::move(found).error();
   ImportProposal plan;
   plan.archive = place->archive;
   plan.link = options.link;
-  if (found->frames.empty() && found->light_files.empty() && found->photo_folders.empty()) {
-    return Error{
-        ErrorKind::kNoInput, "there are no photographs", options.folders.front(),
-        found->left_over.empty() ? "the folder is empty"
-                                 : "no file in it is a raw, TIFF or EXR frame or has lights",
-        "name the folder of the raw files; where a ball lies in photographs, `weft lights FOLDER --ball` "
-        "tells their lights first"};
+  if (options.balls) {
+    const auto aside = std::make_shared<const TemporaryFolder>();
+    plan.photographs = plan_photographs_with_balls(options, plan.archive, aside->path());
+    plan.aside = aside;
+    if (Result<void> ok = check_disks(plan); !ok) return std::move(ok).error();
+    return plan;
   }
-  plan.photographs = plan_photographs(*found, plan.archive);
+  Result<SourceFolders> found = look_into(options.folders);
+  if (!found) return std::move(found).error();
+  if (found->frames.empty() && found->light_files.empty() && found->photo_folders.empty()) {
+    return Error{ErrorKind::kNoInput, "there are no photographs", options.folders.front().string(),
+                 found->left_over.empty() ? "the folder is empty"
+                                          : "no file in it is a raw, TIFF or EXR frame or has lights",
+                 "name the folder of the raw files; where a ball lies in photographs, say --ball"};
+  }
+  plan.photographs = plan_photographs(*found, options, plan.archive);
   drop_used(plan.photographs, *found);
-  if (Result<void> ok = plan_sessions(options, *place, *std::move(grouping), *found, context, plan); !ok)
-    return std::move(ok).error();
+  std::set<fs::path> described;
+  for (const ProposedPhotographs& each : plan.photographs)
+    described.insert(each.descriptions.begin(), each.descriptions.end());
+  Result<void> planned =
+      plan_sessions(options, *place, *std::move(grouping), *found, context, plan, described);
+  if (!planned) return std::move(planned).error();
+  for (const fs::path& file : found->descriptions)
+    if (!described.contains(file)) found->left_over.push_back({file, "it speaks of no session"});
   plan.left_over = std::move(found->left_over);
   if (Result<void> ok = check_disks(plan); !ok) return std::move(ok).error();
   return plan;
@@ -377,11 +393,12 @@ Json json_of(const ImportProposal& plan) {
                         {"error", error_of(session.refusal)}});
   }
   for (const ProposedPhotographs& each : plan.photographs) {
-    photographs.push_back({{"folder", each.folder.string()},
+    photographs.push_back({{"session", each.session.folder.string()},
                            {"state", state_of(each.state)},
                            {"source", each.source.string()},
-                           {"photographs", each.photos.lit.size()},
-                           {"assumed", each.photos.assumed},
+                           {"fabric", each.session.fabric},
+                           {"photographs", each.lights.lights.size()},
+                           {"assumed", each.assumed},
                            {"error", error_of(each.refusal)}});
   }
   for (const LeftOver& file : plan.left_over)

@@ -4,18 +4,22 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "calibration/run/balls.h"
 #include "core/base/job_context.h"
 #include "core/base/json_document.h"
 #include "core/base/result.h"
+#include "core/base/temporary_folder.h"
 #include "core/rig/calibration.h"
+#include "core/rig/photo_reading.h"
 #include "core/rig/session.h"
 #include "library/import/led_decision.h"
 #include "library/import/source_folders.h"
-#include "solve/input/photo_input.h"
+#include "solve/input/light_list.h"
 
 // Folders of photographs that other rigs and programs left, as sessions of weft: what would be made of them.
 
@@ -30,7 +34,7 @@ enum class FrameLink {
 inline constexpr std::array<const char*, 3> kFrameLinkNames = {"hard", "copy", "symbolic"};
 
 struct ImportOptions {
-  std::vector<std::string> folders;
+  std::vector<std::filesystem::path> folders;
   std::filesystem::path rig;          ///< rig file; its calibration, sessions and height where none is named
   std::filesystem::path calibration;  ///< folder
   std::string pattern;                ///< of names (name_pattern.h); empty: none
@@ -40,6 +44,11 @@ struct ImportOptions {
   double gap_s = 60;
   bool takes_missing = false;
   std::optional<double> cloth_height_mm;  ///< where no description says one
+  /// How photographs that no rig took are read; the one of them with all lamps off, empty: none; what is
+  /// known of balls that tell their lights, none: light files do.
+  PhotoReading reading;
+  std::filesystem::path dark;
+  std::optional<calibration::BallsOptions> balls;
 };
 
 /// What is to become of one group of photographs.
@@ -61,12 +70,17 @@ struct ProposedSession {
   std::optional<Error> refusal;
 };
 
-/// Photographs under distant lights: a folder for `weft solve --photos`.
+/// A session of photographs that no rig took, and of the lights that were brought along.
 struct ProposedPhotographs {
   ImportState state = ImportState::kNew;
-  std::filesystem::path source;  ///< light file, or folder
-  std::filesystem::path folder;  ///< that will be made
-  solve::SolvePlan photos;
+  std::filesystem::path source;              ///< light file, or folder
+  Session session;                           ///< as it will be written; its folder is where
+  std::vector<std::filesystem::path> files;  ///< of its shots
+  solve::LightList lights;                   ///< theirs, by the names that the session has
+  std::filesystem::path mask;                ///< empty: there is none
+  std::filesystem::path picture;             ///< of the balls that told the lights; empty: none did
+  std::vector<std::filesystem::path> descriptions;
+  std::vector<std::string> assumed;
   std::optional<Error> refusal;
 };
 
@@ -79,6 +93,7 @@ struct ImportProposal {
   std::vector<ProposedSession> sessions;
   std::vector<ProposedPhotographs> photographs;
   std::vector<LeftOver> left_over;
+  std::shared_ptr<const TemporaryFolder> aside;  ///< has what balls told until it is imported
 
   std::size_t count(ImportState state) const;
   /// The first refusal; nothing where all can be imported.

@@ -61,10 +61,6 @@ class Walk {
       found_.left_over.push_back({folder, "it is a session of weft already"});
       return {};
     }
-    if (fs::exists(folder / "photographs.json", ignored)) {
-      found_.left_over.push_back({folder, "it was imported already"});
-      return {};
-    }
     above = take_lights(folder, *entries, above);
     std::vector<fs::path> below;
     for (const fs::path& entry : *entries) {
@@ -114,9 +110,11 @@ class Walk {
     const std::string ending = ending_of(file);
     if (!is_regular) {
       found_.left_over.push_back({file, "it is no file"});
+    } else if (file.filename() == "import.toml") {
+      found_.descriptions.push_back(file);
     } else if (has_lights) {
       if (is_raw_name(file) || is_linear_image(file)) found_.beside_lights.push_back(file);
-    } else if (file.filename() == "import.toml" || ending == ".json") {
+    } else if (ending == ".json") {
       found_.descriptions.push_back(file);
     } else if (is_jpeg(file)) {
       found_.left_over.push_back({file, "a JPEG went through the camera's tone curve"});
@@ -140,11 +138,12 @@ bool is_raw_name(const fs::path& file) {
   return std::ranges::find(kRaw, ending_of(file)) != kRaw.end();
 }
 
-Result<SourceFolders> look_into(const std::vector<std::string>& folders) {
+Result<SourceFolders> look_into(const std::vector<fs::path>& folders) {
   SourceFolders found;
   std::set<fs::path> seen;
-  for (const std::string& named : folders) {
+  for (const fs::path& named : folders) {
     const fs::path folder = absolute_folder(named);
+    found.roots.push_back(folder);
     if (Result<void> ok = Walk(folder, seen, found).into(folder, LightsAbove::kNone); !ok)
       return std::move(ok).error();
   }

@@ -24,6 +24,7 @@ struct LeftOver {
 };
 
 struct SourceFolders {
+  std::vector<std::filesystem::path> roots;        ///< the folders that were named
   std::vector<SourceFile> frames;                  ///< by folder, then as people count
   std::vector<std::filesystem::path> light_files;  ///< .lp, .dome, .relight and JSON with lights
   /// Photographs whose lights are a table beside them or, without names, in the folder above.
@@ -39,6 +40,6 @@ bool is_raw_name(const std::filesystem::path& file);
 
 /// Looks into the folders and those below them. Hidden files and links to folders are passed over; files of
 /// photographs under distant lights are no frames. kNoInput for a folder that cannot be listed.
-Result<SourceFolders> look_into(const std::vector<std::string>& folders);
+Result<SourceFolders> look_into(const std::vector<std::filesystem::path>& folders);
 
 }  // namespace weft::library

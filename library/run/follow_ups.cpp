@@ -52,7 +52,7 @@ Result<FollowUpPrice> try_follow_ups(const Candidate& candidate, const BatchProd
   if (!session) return session.error();
   solve::SessionOptions input = candidate.input;
   input.folder = aside / candidate.input.folder.filename();
-  if (input.calibration.empty()) input.calibration = session->calibration_folder();
+  if (input.calibration.empty() && session->is_of_rig()) input.calibration = session->calibration_folder();
   if (Result<void> ok = link_session(candidate.input.folder, input.folder); !ok) return std::move(ok).error();
   solve::SolveOptions quick;
   quick.method = "fast";

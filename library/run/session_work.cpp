@@ -39,6 +39,7 @@ Result<fs::path> check_session(const SessionWork& work) {
     return Error{ErrorKind::kBadData, "session was changed since the plan", folder.string(),
                  "its session.json differs in what a solve depends on", "plan again"};
   }
+  if (!session->is_of_rig()) return fs::path();
   const auto& named = work.header->calibrations;
   const auto found = std::ranges::find(named, work.planned.calibration, &NamedCalibration::id);
   const fs::path own = found == named.end() ? fs::path() : fs::path(found->folder);

@@ -110,23 +110,31 @@ void add_levels(solve::SolvePlan& plan, const SurveyOptions& options, Candidate&
   }
 }
 
+// By the calibration that is named for its rig, or its own.
+Result<solve::SolvePlan> plan_of_rig(const Session& session, const SurveyOptions& options,
+                                     Calibrations& calibrations, Candidate& candidate) {
+  const NamedCalibration* const named = named_for(session, options.header);
+  if (named != nullptr) candidate.input.calibration = named->folder;
+  const std::string id = named != nullptr ? named->id : session.calibration_id;
+  const Result<Calibration>& calibration =
+      calibrations.of(id, named != nullptr ? fs::path(named->folder) : session.calibration_folder());
+  if (!calibration) return calibration.error();
+  if (calibration->id != id) {
+    return Error{ErrorKind::kBadData, "calibration is not the one of the session",
+                 session.calibration_folder().string(),
+                 fmt::format("its id is {:.12}, session.json names {:.12}", calibration->id, id),
+                 "restore the session's calibration folder, or name another with --calibration"};
+  }
+  return solve::plan_unopened(candidate.input, *calibration);
+}
+
 Result<void> look_into(const SurveyOptions& options, Calibrations& calibrations, Candidate& candidate) {
   const fs::path& folder = candidate.input.folder;
   const Result<Session> session = read_session(folder);
   if (!session) return session.error();
-  const NamedCalibration* const named = named_for(*session, options.header);
-  if (named != nullptr) candidate.input.calibration = named->folder;
-  const std::string id = named != nullptr ? named->id : session->calibration_id;
-  const Result<Calibration>& calibration =
-      calibrations.of(id, named != nullptr ? fs::path(named->folder) : session->calibration_folder());
-  if (!calibration) return calibration.error();
-  if (calibration->id != id) {
-    return Error{ErrorKind::kBadData, "calibration is not the one of the session",
-                 session->calibration_folder().string(),
-                 fmt::format("its id is {:.12}, session.json names {:.12}", calibration->id, id),
-                 "restore the session's calibration folder, or name another with --calibration"};
-  }
-  Result<solve::SolvePlan> plan = solve::plan_unopened(candidate.input, *calibration);
+  Result<solve::SolvePlan> plan = session->is_of_rig()
+                                      ? plan_of_rig(*session, options, calibrations, candidate)
+                                      : solve::plan_session(candidate.input);
   if (!plan) return std::move(plan).error();
   const Result<std::uint64_t> bytes = bytes_of_frames(*plan);
   if (!bytes) return bytes.error();
@@ -135,7 +143,7 @@ Result<void> look_into(const SurveyOptions& options, Calibrations& calibrations,
   candidate.rig = session->rig;
   candidate.before = solve::current_solve(*session);
   candidate.size = plan->size;
-  candidate.traits = {session->fabric, id,
+  candidate.traits = {session->fabric, plan->calibration.id,
                       candidate.before.empty() ? "" : words_of_solve(folder / "solve" / candidate.before),
                       static_cast<double>(plan->size.pixels()) / 1e6,
                       static_cast<int>(plan->frames().size())};

@@ -96,8 +96,7 @@ Json provenance_of(const MapSet& set, const fs::path& scan) {
       facts[key == std::string("id") ? "maps" : key] = set.document[key];
   }
   if (const Result<Session> session = solve::read_solved(scan)) {
-    const bool is_of_photographs = solve::photographed_pixel(*session).has_value();
-    facts["session"] = is_of_photographs ? session->fabric : scan.filename().string();
+    facts["session"] = solve::is_lone_solve(*session) ? session->fabric : scan.filename().string();
   }
   if (!set.is_size_known) facts["size_known"] = false;
   return facts;

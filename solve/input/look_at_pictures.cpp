@@ -147,7 +147,7 @@ std::string kinds_in_words(const Pictures& pictures, Transfer wanted) {
 }
 
 void say_what_is_assumed(const Pictures& pictures, const PhotoOptions& options, SolvePlan& plan) {
-  plan.assumed.push_back(kinds_in_words(pictures, options.transfer));
+  plan.assumed.push_back(kinds_in_words(pictures, options.reading.transfer));
   const int orientation = pictures.front().orientation;
   if (plan.orientation != 1) {
     plan.assumed.push_back(fmt::format("orientation {}: {} as they are shown, and lights are taken so",
@@ -170,20 +170,21 @@ Result<void> look_at_pictures(const PhotoOptions& options, SolvePlan& plan) {
   Result<Pictures> pictures = meanings_of(plan);
   if (!pictures) return std::move(pictures).error();
   const PictureMeaning& first = pictures->front();
-  const bool as_shown = options.orientation == PictureOrientation::kShown;
+  const bool as_shown = options.reading.orientation == PictureOrientation::kShown;
   plan.raw = first.is_raw;
   plan.orientation = as_shown && !plan.raw ? first.orientation : 1;
   plan.size = shown_size(first.size, plan.orientation);
-  plan.transfer = options.transfer == Transfer::kAuto || plan.raw ? first.transfer : options.transfer;
+  plan.transfer =
+      options.reading.transfer == Transfer::kAuto || plan.raw ? first.transfer : options.reading.transfer;
   for (const PictureMeaning& picture : *pictures) {
     if (Result<void> ok = check_alike(picture, first, as_shown); !ok) return ok;
-    const Transfer transfer = options.transfer == Transfer::kAuto ? picture.transfer : plan.transfer;
+    const Transfer transfer = options.reading.transfer == Transfer::kAuto ? picture.transfer : plan.transfer;
     if (transfer != plan.transfer) plan.transfer = Transfer::kAuto;
   }
-  plan.transfer_is_custom =
-      options.transfer == Transfer::kAuto && std::ranges::all_of(*pictures, [](const PictureMeaning& p) {
-        return p.transfer_by.empty() && p.format != "jpeg";
-      });
+  plan.transfer_is_custom = options.reading.transfer == Transfer::kAuto &&
+                            std::ranges::all_of(*pictures, [](const PictureMeaning& p) {
+                              return p.transfer_by.empty() && p.format != "jpeg";
+                            });
   even_out_exposures(*pictures, plan);
   if (Result<void> ok = look_at_dark(options.dark, first, as_shown, plan); !ok) return ok;
   const std::vector<DistantLight>& lights = std::get<DistantLights>(*plan.calibration.lights).lights;

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "core/base/files.h"
+#include "solve/input/light_axes.h"
 #include "solve/input/light_list.h"
 #include "solve/input/look_at_pictures.h"
 #include "solve/input/photo_mask.h"
@@ -42,7 +43,8 @@ SolvePlan plan_of(const LightList& list, const fs::path& folder) {
 Result<SolvePlan> read_photos(const PhotoOptions& options, const LightList& list) {
   const bool has_folder = !options.folder.empty();
   SolvePlan plan = plan_of(list, has_folder ? options.folder : list.file.parent_path());
-  if (!has_folder) return plan;
+  plan.mask = options.mask;
+  if (!has_folder || !plan.mask.empty()) return plan;
   Result<fs::path> mask = find_mask(options.folder);
   if (!mask) return std::move(mask).error();
   plan.mask = std::move(*mask);
@@ -78,19 +80,20 @@ void stand_near(const PhotoOptions& options, const LightList& list, SolvePlan& p
     for (std::size_t c = 0; c < 3; ++c)
       led.flux_rgb[c] = distant.lights[k].irradiance_rgb[c] * distance_mm * distance_mm;
   }
-  const double mm_per_pixel = *options.mm_per_pixel, width_mm = plan.size.width * mm_per_pixel;
-  const double distance_mm =
-      options.fov_deg ? width_mm / (2 * std::tan(*options.fov_deg * kDegree / 2)) : kFarAway_mm;
+  const double mm_per_pixel = *options.reading.mm_per_pixel, width_mm = plan.size.width * mm_per_pixel;
+  const double distance_mm = options.reading.fov_deg
+                                 ? width_mm / (2 * std::tan(*options.reading.fov_deg * kDegree / 2))
+                                 : kFarAway_mm;
   plan.calibration.camera = overhead_camera(plan.size, distance_mm, mm_per_pixel);
   plan.calibration.lights = std::move(near);
-  plan.input.mm_per_pixel = options.mm_per_pixel;
-  plan.input.fov_deg = options.fov_deg;
+  plan.input.mm_per_pixel = options.reading.mm_per_pixel;
+  plan.input.fov_deg = options.reading.fov_deg;
   for (std::size_t k = 0; k < plan.lit.size(); ++k)
     plan.input.photographs[k].distance_mm =
         length(list.lights[static_cast<std::size_t>(plan.lit[k].led) - 1].toward);
   plan.assumed.push_back(
       fmt::format("near lights, in mm over the middle of the picture, of {:g} mm a pixel{}", mm_per_pixel,
-                  options.fov_deg ? "" : ", seen from far away"));
+                  options.reading.fov_deg ? "" : ", seen from far away"));
 }
 
 // What a person calls them by: the name of their folder or light file.
@@ -117,11 +120,12 @@ Result<SolvePlan> plan_photos(const PhotoOptions& options) {
   Result<SolvePlan> plan = read_photos(options, *list);
   if (!plan) return plan;
   plan->clipped = options.clipped;
-  plan->ambient = options.ambient;
-  if (Result<void> laid = lay_lights(options.flip, options.folder / options.light_file,
+  plan->ambient = options.reading.ambient;
+  if (Result<void> laid = lay_lights(options.reading.flip, options.folder / options.light_file,
                                      std::get<DistantLights>(*plan->calibration.lights));
       !laid)
     return std::move(laid).error();
+  if (options.reading.flip != LightFlip::kNone) plan->input.flip = name_of(options.reading.flip);
   if (Result<void> chosen = choose_photos(options.lights, *plan); !chosen) return std::move(chosen).error();
   if (plan->lit.size() < 3) {
     return Error{ErrorKind::kBadData, "too few lights",
@@ -131,7 +135,7 @@ Result<SolvePlan> plan_photos(const PhotoOptions& options) {
   }
   if (Result<void> looked = look_at_pictures(options, *plan); !looked) return std::move(looked).error();
   if (Result<void> looked = look_at_mask(*plan); !looked) return std::move(looked).error();
-  if (list->are_positions && options.mm_per_pixel) stand_near(options, *list, *plan);
+  if (list->are_positions && options.reading.mm_per_pixel) stand_near(options, *list, *plan);
   const std::string name = name_of_source(options).string();
   plan->where = plan->session.fabric = name;
   std::error_code ignored;

@@ -13,6 +13,7 @@
 #include "core/image_io/linear_image.h"
 #include "core/rig/exposure_words.h"
 #include "core/rig/suits.h"
+#include "solve/input/session_photos.h"
 #include "solve/session/left_out_shots.h"
 
 namespace weft::solve {
@@ -169,6 +170,18 @@ Result<Calibration> calibration_of(const Session& session, const fs::path& named
                "restore the session's calibration folder, or name another with --calibration"};
 }
 
+Result<SolvePlan> plan_of_photographs(const SessionOptions& options, SolvePlan begun) {
+  const Result<std::vector<Shot>> lit = choose_lit(begun.session, options.leds);
+  return lit ? plan_photographs(options, *lit, std::move(begun)) : lit.error();
+}
+
+Error reads_raws(const std::string& where) {
+  return {
+      ErrorKind::kUsage, "the session of a rig is read by its calibration", where,
+      "a transfer, an orientation, lights turned round and a pixel's size are of photographs without a rig",
+      "leave these options out"};
+}
+
 // The size that all frames have.
 Result<Size> look_at_headers(const SolvePlan& plan) {
   capture::FrameHeaders headers(
@@ -185,6 +198,8 @@ Result<Size> look_at_headers(const SolvePlan& plan) {
 Result<SolvePlan> plan_session(const SessionOptions& options) {
   Result<SolvePlan> plan = begin_plan(options);
   if (!plan) return plan;
+  if (!plan->session.is_of_rig()) return plan_of_photographs(options, *std::move(plan));
+  if (options.reading != PhotoReading()) return reads_raws(plan->where);
   Result<Calibration> calibration = calibration_of(plan->session, options.calibration);
   if (!calibration) return std::move(calibration).error();
   plan->calibration = std::move(*calibration);
@@ -215,6 +230,8 @@ Result<void> plan_second_pose(const fs::path& folder, const solver::MethodName& 
   if (method.level != solver::Level::kRobust && method.level != solver::Level::kReference)
     return unfit(ErrorKind::kUsage, fmt::format("{} seeks no lobe", method.name),
                  "solve with --quality robust or reference");
+  if (!plan.is_of_rig)
+    return unfit(ErrorKind::kUsage, "photographs that no rig took have one pose", "leave --second-pose out");
   Result<SolvePlan> second =
       plan_session({.folder = folder, .calibration = first.calibration, .leds = first.leds});
   if (!second) return std::move(second).error();

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/image_io/linear_image.h"
 #include "core/rig/calibration.h"
+#include "core/rig/photo_reading.h"
 #include "solve/photographs/solve_plan.h"
 #include "solver/method.h"
 
@@ -17,6 +19,8 @@ struct SessionOptions {
   std::filesystem::path calibration;  ///< empty: the session's own
   std::vector<int> leds;              ///< empty: all that were lit
   Json accepted_moved = {};           ///< beside the session's own word (docs/formats.md)
+  PhotoReading reading = {};          ///< of photographs that no rig took, over what the session says
+  Clipped clipped = Clipped::kMark;   ///< what becomes of their full scale, as the method has it
 };
 
 /// Everything that can be checked before an hour of work is checked here.

@@ -167,41 +167,12 @@ void describe(Fields& fields, SolveRequest& r) {
   describe_photographs(fields, r);
   describe_level(fields, r);
   describe_readings(fields, r);
-  fields.choice({.name = "transfer",
-                 .says = "How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG "
-                         "sRGB), linear, srgb",
-                 .said = Said::kAtThisMachine},
-                r.photos.transfer, kTransferNames);
-  fields.choice({.name = "orientation",
-                 .says = "How photographs lie under their lights: shown (turned as their tag says), stored",
-                 .said = Said::kAtThisMachine},
-                r.photos.orientation, solve::kPictureOrientationNames);
-  fields.choice(
-      {.name = "flip",
-       .says = "What is done to the directions of their lights: none, x, y, z or all turned round, left "
-               "or right by a quarter, exchange (x for y), against (x for -y)",
-       .said = Said::kAtThisMachine},
-      r.photos.flip, solve::kLightFlipNames);
+  describe(fields, r.session.reading);
   fields.value({.name = "dark",
                 .says = "The same photograph with all lamps off, which is taken from the others",
                 .said = Said::kAtThisMachine},
                r.photos.dark);
-  fields.value({.name = "mm_per_pixel",
-                .says = "Of the cloth, mm; positions of lights are then near lights, in mm over its middle",
-                .range = {1e-4, 100},
-                .said = Said::kAtThisMachine},
-               r.photos.mm_per_pixel);
-  fields.value({.name = "fov_deg",
-                .says = "Of the picture's width, degrees; without it, it is seen from far away",
-                .range = {0.1, 170},
-                .option = "--fov",
-                .said = Said::kAtThisMachine},
-               r.photos.fov_deg);
-  fields.value({.name = "ambient",
-                .says = "Light that is in all photographs, a share of full scale",
-                .range = kNotNegative,
-                .said = Said::kAtThisMachine},
-               r.photos.ambient);
+  fields.exclude("session", "dark");
   describe_maps(fields, r);
 }
 
@@ -210,6 +181,7 @@ void describe(Fields& fields, PriceRequest& request) {
   fields.need_one({"session"});
   describe_wish(fields, request.solve);
   describe_readings(fields, request.solve);
+  describe(fields, request.solve.session.reading);
 }
 
 }  // namespace weft::solve

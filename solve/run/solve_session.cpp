@@ -478,14 +478,19 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
                                   const JobContext& context) {
   const Result<solver::MethodName> method = method_named(options.method);
   if (!method) return method.error();
-  Result<SolvePlan> plan = plan_session(input);
+  SessionOptions session = input;
+  session.clipped = method->keeps_clipped ? Clipped::kKeep : Clipped::kMark;
+  Result<SolvePlan> plan = plan_session(session);
   if (!plan) return std::move(plan).error();
   plan->extent = method->extent;
   if (!options.second_pose.empty()) {
     Result<void> second = plan_second_pose(options.second_pose, *method, input, *plan);
     if (!second) return std::move(second).error();
   }
-  return solve(*method, *plan, options, context);
+  Result<SolveReport> report = solve(*method, *plan, options, context);
+  if (!report || plan->is_of_rig || input.reading == PhotoReading()) return report;
+  if (Result<void> kept = keep_reading(input.folder, input.reading); !kept) return std::move(kept).error();
+  return report;
 }
 
 Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& options,
@@ -498,7 +503,7 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   if (!plan) return plan.error();
   Result<SolveReport> report = solve(*method, *plan, options, context);
   if (!report) return report;
-  std::optional<double> mm_per_pixel = photos.mm_per_pixel;
+  std::optional<double> mm_per_pixel = photos.reading.mm_per_pixel;
   if (Result<void> kept = keep_pixel(report->folder, mm_per_pixel); !kept) return std::move(kept).error();
   return report;
 }

@@ -27,31 +27,41 @@ Session of_today(Session session) {
   return session;
 }
 
+std::string text_in(const Json& document, const char* key) {
+  const Json value = document.value(key, Json());
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
 // Photographs that a solve names, as session.json holds them.
 struct UsedShot {
-  std::string file, sha256;
-  int led = 0;
+  std::string file, sha256;  // file: empty of the dark one of photographs that no rig took
+  std::optional<int> led;    // none of those
 };
 
 std::vector<UsedShot> used_shots(const Json& solve) {
   std::vector<UsedShot> used;
-  const Json::json_pointer list("/input/shots");
-  if (!solve.contains(list) || !solve[list].is_array()) return used;
-  for (const Json& shot : solve[list]) {
-    if (!shot.is_object()) continue;
-    const auto text = [&](const char* key) {
-      const Json value = shot.value(key, Json());
-      return value.is_string() ? value.get<std::string>() : std::string();
-    };
-    const Json led = shot.value("led", Json());
-    used.push_back({text("file"), text("sha256"), led.is_number_integer() ? led.get<int>() : 0});
+  for (const char* name : {"/input/shots", "/input/photographs"}) {
+    const Json::json_pointer list(name);
+    if (!solve.contains(list) || !solve[list].is_array()) continue;
+    for (const Json& shot : solve[list]) {
+      if (!shot.is_object()) continue;
+      const Json led = shot.value("led", Json());
+      used.push_back({text_in(shot, "file"), text_in(shot, "sha256"),
+                      led.is_number_integer() ? std::optional(led.get<int>()) : std::nullopt});
+    }
   }
+  if (const Json::json_pointer dark("/input/dark"); solve.contains(dark) && solve[dark].is_string())
+    used.push_back({"", solve[dark].get<std::string>(), {}});
   return used;
+}
+
+bool is_of(const UsedShot& used, const Shot& shot) {
+  return used.file.empty() ? used.sha256 == shot.sha256 : used.file == shot.file;
 }
 
 bool is_among(const std::vector<UsedShot>& used, const Shot& shot) {
   return std::ranges::any_of(
-      used, [&](const UsedShot& each) { return each.file == shot.file && each.sha256 == shot.sha256; });
+      used, [&](const UsedShot& each) { return is_of(each, shot) && each.sha256 == shot.sha256; });
 }
 
 std::string name_of_led(int led) {
@@ -83,16 +93,35 @@ bool is_wanted(const Session& today, const std::vector<const Shot*>& lit, const 
   return is_of_pair && today.lit(Polariser::kParallel).size() >= lit.size();
 }
 
+// Why a solve took photographs that no rig took otherwise than a person has it today; empty: it did not.
+std::string why_read_otherwise(const PhotoReading& reading, const Json& input) {
+  const auto other = [](const char* what, const std::string& now, const std::string& then) {
+    return now == then ? std::string()
+                       : fmt::format("{} is {} now, and it was solved with {}", what, now, then);
+  };
+  const std::string flip = text_in(input, "flip");
+  std::string why = other("--flip", name_of(reading.flip), flip.empty() ? name_of(LightFlip::kNone) : flip);
+  if (why.empty() && reading.transfer != Transfer::kAuto)
+    why = other("--transfer", name_of(reading.transfer), text_in(input, "transfer"));
+  const Json ambient = input.value("ambient", Json());
+  if (why.empty())
+    why = other("--ambient", fmt::format("{}", reading.ambient),
+                fmt::format("{}", ambient.is_number() ? ambient.get<double>() : 0.0));
+  return why;
+}
+
 // Why it was not solved from today's photographs; empty: it was.
 std::string why_outdated(const Session& session, const Session& today, const Json& solve) {
   const std::vector<UsedShot> used = used_shots(solve);
   if (used.empty()) return "";  // of a document that does not say
   for (const UsedShot& each : used) {
-    const auto shot = std::ranges::find(session.shots, each.file, &Shot::file);
-    const std::string led = name_of_led(each.led);
+    const auto shot =
+        std::ranges::find_if(session.shots, [&](const Shot& candidate) { return is_of(each, candidate); });
     if (shot == session.shots.end() || shot->sha256 != each.sha256)
-      return fmt::format("{} is another file than it was solved from", each.file);
-    if (shot->led != each.led)
+      return fmt::format("{} is another file than it was solved from",
+                         each.file.empty() ? "the dark photograph" : each.file);
+    const std::string led = name_of_led(each.led.value_or(shot->led));
+    if (each.led && shot->led != *each.led)
       return fmt::format("{} is of {} now, and it was solved as of {}", each.file, name_of_led(shot->led),
                          led);
     if (shot->superseded_by) return fmt::format("{} was photographed again since", led);
@@ -105,18 +134,13 @@ std::string why_outdated(const Session& session, const Session& today, const Jso
     if (is_wanted(today, lit, used, shot) && !is_among(used, shot))
       return fmt::format("it was solved without {}, the photograph of {}", shot.file, name_of_led(shot.led));
   }
-  return "";
+  return session.is_of_rig() ? "" : why_read_otherwise(*session.photographs, solve.value("input", Json()));
 }
 
 std::string written_at(const fs::path& file) {
   std::error_code ignored;
   const auto written = std::chrono::file_clock::to_sys(fs::last_write_time(file, ignored));
   return iso_time(std::chrono::duration<double>(written.time_since_epoch()).count());
-}
-
-std::string text_in(const Json& document, const char* key) {
-  const Json value = document.value(key, Json());
-  return value.is_string() ? value.get<std::string>() : std::string();
 }
 
 std::vector<ChoosableSolve> choosable(const Session& session, const Session& today) {
@@ -213,7 +237,7 @@ const ChoosableSolve* SessionSolves::current_one() const {
 
 SessionSolves solves_of(const Session& session) {
   SessionSolves solves = {.session = session.folder,
-                          .is_of_photographs = photographed_pixel(session).has_value(),
+                          .is_lone = is_lone_solve(session),
                           .all = choosable(session, of_today(session))};
   for (std::size_t i = 0; i < solves.all.size(); ++i) {
     if (!solves.best || order_of(solves.all[i]) >= order_of(solves.all[*solves.best])) solves.best = i;
@@ -226,7 +250,7 @@ SessionSolves solves_of(const Session& session) {
 
 std::string command_to_solve(const SessionSolves& solves, const std::string& level) {
   return fmt::format("weft solve {} --quality {}",
-                     solves.is_of_photographs ? "--photos FOLDER" : solves.session.string(), level);
+                     solves.is_lone ? "--photos FOLDER" : solves.session.string(), level);
 }
 
 std::string current_solve(const Session& session) {

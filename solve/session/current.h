@@ -38,7 +38,7 @@ std::string words_of(const ChoosableSolve& solve);
 /// The solves of a session.
 struct SessionSolves {
   std::filesystem::path session;
-  bool is_of_photographs = false;   ///< under distant lights: there is one, and its folder is `session`
+  bool is_lone = false;             ///< of photographs: there is one, and its folder is `session`
   std::vector<ChoosableSolve> all;  ///< the oldest first
   /// Indices of `all`; empty where there is no solve. `best`: of those of today's photographs the highest
   /// level, of two alike the newest; one that waits stands above previews alone. `current`: what a person

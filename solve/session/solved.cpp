@@ -10,19 +10,19 @@
 #include "core/base/files.h"
 #include "core/base/product.h"
 #include "core/solve/solve.h"
+#include "solve/session/session_lock.h"
 
 namespace weft::solve {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPhotographs = "photographs";
+constexpr const char* kSessionDocument = "session.json";
 constexpr const char* kPixel = "mm_per_pixel";
 
-constexpr double kLeastPixel_mm = 1e-4, kMostPixel_mm = 100;  // as describe_grid() has it
-
 bool is_pixel(const Json& mm) {
-  return mm.is_number() && mm.get<double>() >= kLeastPixel_mm && mm.get<double>() <= kMostPixel_mm;
+  return mm.is_number() && mm.get<double>() >= kPixelOfPhotographs_mm.least &&
+         mm.get<double>() <= kPixelOfPhotographs_mm.most;
 }
 
 // ./NAME-solve/<id> is called NAME.
@@ -62,7 +62,7 @@ Error is_of_solves(const fs::path& folder, const std::vector<Product>& solves) {
 
 Result<Session> read_solved(const fs::path& folder) {
   const fs::path file = folder / kSolveProduct.document;
-  if (is_there(folder / "session.json")) return read_session(folder);
+  if (is_there(folder / kSessionDocument)) return read_session(folder);
   if (!is_there(file)) {
     const std::vector<Product> solves = list_products(kSolveProduct, folder);
     return solves.empty() ? read_session(folder) : Result<Session>(is_of_solves(folder, solves));
@@ -80,23 +80,50 @@ Result<Session> read_solved(const fs::path& folder) {
                  "maps are made of the session that it lies in",
                  fmt::format("name the session, and of its solves this one with --solve {}", facts->id)};
   }
-  session.document = {{kPhotographs, Json::object()}};
+  session.photographs.emplace();
   if (const auto mm = document->find(kPixel); mm != document->end()) {
     if (!is_pixel(*mm)) {
       return Error{ErrorKind::kBadData, "the size of a pixel is none", file.string(),
                    fmt::format("{} is {}", kPixel, mm->dump()),
-                   fmt::format("write mm there, {:g} to {:g}, or take it out", kLeastPixel_mm, kMostPixel_mm)};
+                   fmt::format("write mm there, {:g} to {:g}, or take it out", kPixelOfPhotographs_mm.least,
+                               kPixelOfPhotographs_mm.most)};
     }
-    session.document[kPhotographs][kPixel] = *mm;
+    session.photographs->mm_per_pixel = mm->get<double>();
   }
   return session;
 }
 
+bool is_lone_solve(const Session& session) {
+  return !session.is_of_rig() && !is_there(session.folder / kSessionDocument);
+}
+
 std::optional<PhotographedPixel> photographed_pixel(const Session& session) {
-  const auto photographs = session.document.find(kPhotographs);
-  if (photographs == session.document.end()) return {};
-  if (!photographs->contains(kPixel)) return PhotographedPixel{kAssumedMmPerPixel, false};
-  return PhotographedPixel{(*photographs)[kPixel].get<double>(), true};
+  if (session.is_of_rig()) return {};
+  const std::optional<double>& mm = session.photographs->mm_per_pixel;
+  return PhotographedPixel{mm.value_or(kAssumedMmPerPixel), mm.has_value()};
+}
+
+namespace {
+
+Result<void> keep_in_solve(const fs::path& folder, double mm) {
+  const fs::path file = folder / kSolveProduct.document;
+  Result<Json> document = read_json(file, kSolveProduct.schema, 1);
+  if (!document) return std::move(document).error();
+  (*document)[kPixel] = mm;
+  return write_json(file, *document);
+}
+
+}  // namespace
+
+Result<void> keep_reading(const fs::path& folder, const PhotoReading& said) {
+  const Result<Descriptor> lock = lock_session(folder);
+  if (!lock) return lock.error();
+  Result<Session> session = read_session(folder);
+  if (!session) return std::move(session).error();
+  const PhotoReading reading = said_after(said, session->photographs.value_or(PhotoReading()));
+  if (session->is_of_rig() || reading == *session->photographs) return {};
+  session->photographs = reading;
+  return write_session(*session);
 }
 
 Result<void> keep_pixel(const fs::path& folder, std::optional<double>& mm_per_pixel) {
@@ -107,11 +134,7 @@ Result<void> keep_pixel(const fs::path& folder, std::optional<double>& mm_per_pi
   if (!pixel) return {};
   const double said = *std::exchange(mm_per_pixel, std::nullopt);
   if (pixel->is_known && pixel->mm == said) return {};
-  const fs::path file = folder / kSolveProduct.document;
-  Result<Json> document = read_json(file, kSolveProduct.schema, 1);
-  if (!document) return std::move(document).error();
-  (*document)[kPixel] = said;
-  return write_json(file, *document);
+  return is_lone_solve(*session) ? keep_in_solve(folder, said) : keep_reading(folder, {.mm_per_pixel = said});
 }
 
 std::string size_words(const SourceFacts& source) {

@@ -23,6 +23,9 @@ inline constexpr double kAssumedMmPerPixel = 0.1;
 /// holds solves of photographs.
 Result<Session> read_solved(const std::filesystem::path& folder);
 
+/// Whether the folder is the solve of photographs itself: they cannot be solved again by it.
+bool is_lone_solve(const Session& session);
+
 /// A pixel of photographs that no calibrated camera took.
 struct PhotographedPixel {
   double mm = kAssumedMmPerPixel;  ///< its side
@@ -31,10 +34,14 @@ struct PhotographedPixel {
 /// How large a pixel is of photographs that no calibrated camera took; none of a session of a rig.
 std::optional<PhotographedPixel> photographed_pixel(const Session& session);
 
-/// What a person says of the pixels of photographs is kept in their solve.json, and none is left for the
-/// grid, which is theirs. That of a session is of its grid, and stays. Errors of read_json() and
-/// write_json().
+/// What a person says of the pixels of photographs is kept in session.json, or in the solve.json of a lone
+/// solve, and none is left for the grid, which is theirs. That of a rig's session is of its grid, and stays.
+/// Errors of read_json(), write_json() and lock_session().
 Result<void> keep_pixel(const std::filesystem::path& folder, std::optional<double>& mm_per_pixel);
+
+/// What a person says of photographs that no rig took is kept in their session.json. Errors of lock_session()
+/// and read_session().
+Result<void> keep_reading(const std::filesystem::path& folder, const PhotoReading& said);
 
 /// "the size is not known: 0.1 mm a pixel is assumed; --mm-per-pixel says it"; empty where it is known.
 std::string size_words(const SourceFacts& source);

@@ -425,7 +425,7 @@ TEST_F(Import, RefusesARingThatTwoAssignmentsFitAlikeAndShowsBoth) {
               testing::AnyOf(HasSubstr("explains it as well"), HasSubstr("does not object")));
 }
 
-TEST_F(Import, MakesFoldersOfPhotographsUnderDistantLights) {
+TEST_F(Import, MakesSessionsOfPhotographsThatAreSolvedAsTheyAreAlone) {
   PhotographSample sample;
   sample.write(source_ / "buddha");
   fs::create_directories(source_ / "coin/images");
@@ -436,26 +436,63 @@ TEST_F(Import, MakesFoldersOfPhotographsUnderDistantLights) {
     lights += fmt::format("images/{} {} {} {}\n", sample.name_of(k), l.x, l.y, l.z);
   }
   put_bytes(source_ / "coin/coin.lp", lights);
+  put_bytes(source_ / "coin/import.toml", "fabric = \"old coin\"\ntags = [\"metal\"]\n");
   const Json plan = imported();
   EXPECT_EQ(plan["imported"], 2);
   ASSERT_EQ(plan["left_over"].size(), 2U) << plan["left_over"];
   EXPECT_THAT(plan["left_over"].dump(), AllOf(HasSubstr("albedo_gt.exr"), HasSubstr("normal_gt.exr")));
+  EXPECT_EQ(session("coin").fabric, "old coin");
+  EXPECT_EQ(session("coin").document["metadata"]["tags"], Json({"metal"}));
+  EXPECT_EQ(imported()["imported"], 0) << "the same once more";
   for (const std::string name : {"buddha", "coin"}) {
     SCOPED_TRACE(name);
-    const auto solve = [&](const std::string& option, const fs::path& input, const std::string& to) {
-      const Outcome solved =
-          run_weft({"solve", option, input.string(), "-q", "--no-previews", "-o", (work_ / to).string()});
-      EXPECT_EQ(solved.exit_code, 0) << solved.error;
-    };
-    solve("--photos", archive_ / (name + ".photos"), name + " imported");
-    solve(name == "coin" ? "--lp" : "--photos", name == "coin" ? source_ / "coin/coin.lp" : source_ / name,
-          name + " own");
-    const Json difference = run_weft({"compare", (work_ / (name + " imported") / "normal.exr").string(),
-                                      (work_ / (name + " own") / "normal.exr").string(), "--json"})
+    const fs::path made = archive_ / (name + ".weft"), own = work_ / (name + " own");
+    EXPECT_FALSE(session(name).is_of_rig());
+    const Outcome solved = run_weft({"solve", made.string(), "-q", "--no-previews", "--json"});
+    ASSERT_EQ(solved.exit_code, 0) << solved.error;
+    run_weft({"solve", name == "coin" ? "--lp" : "--photos",
+              (name == "coin" ? source_ / "coin/coin.lp" : source_ / name).string(), "-q", "--no-previews",
+              "-o", own.string()});
+    const Json difference = run_weft({"compare", solved.json()["normal"].get<std::string>(),
+                                      (own / "normal.exr").string(), "--json"})
                                 .json();
     EXPECT_LT(difference["max_deg"].get<double>(), 1e-4) << "directions are written to the last digit";
   }
-  EXPECT_EQ(imported()["imported"], 0) << "the same once more";
+}
+
+TEST_F(Import, KeepsWhatAPersonSaysOfPhotographsAndSolvesThemSoAgain) {
+  PhotographSample sample;
+  sample.write(source_ / "buddha");
+  EXPECT_EQ(run_weft(words({"--yes", "--json", "-q", "--mm-per-pixel", "0.05"})).exit_code, 0);
+  const fs::path made = archive_ / "buddha.weft";
+  ASSERT_TRUE(session("buddha").photographs);
+  EXPECT_EQ(session("buddha").photographs->mm_per_pixel, 0.05);
+  const auto solve = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"solve", made.string(), "-q", "--no-previews"});
+    return run_weft(more);
+  };
+  const auto state_of_solve = [&] {
+    return run_weft({"status", made.string(), "--json"}).json()["sessions"][0]["links"][1]["freshness"];
+  };
+  EXPECT_EQ(solve({}).exit_code, 0);
+  EXPECT_EQ(state_of_solve(), "fresh");
+  EXPECT_EQ(solve({"--flip", "x"}).exit_code, 0);
+  EXPECT_EQ(session("buddha").photographs->flip, LightFlip::kX);
+  EXPECT_EQ(state_of_solve(), "fresh") << "that is the current one";
+  EXPECT_THAT(solve({"--calibration", calibration_.string()}).error, HasSubstr("have no calibration"));
+  expect_refusal(work_, {"solve", made.string(), "--dark", "x.png"}, 64, {"--dark"});
+}
+
+TEST_F(Import, RefusesPhotographsThatAreNotThoseThatWereImported) {
+  PhotographSample sample;
+  sample.write(source_ / "buddha");
+  EXPECT_EQ(run_weft(words({"--yes", "--json", "-q", "--link", "copy"})).exit_code, 0);
+  const fs::path made = archive_ / "buddha.weft", first = made / session("buddha").shots[0].file;
+  fs::remove(first);
+  fs::copy_file(source_ / "buddha" / sample.name_of(3), first);
+  expect_refusal(work_, {"solve", made.string(), "-q"}, 65, {"one photograph is under two lights"});
+  fs::remove(first);
+  expect_refusal(work_, {"solve", made.string(), "-q"}, 66, {first.filename().string()});
 }
 
 TEST_F(Import, TakesLightFilesOfOtherHandsAndNamesWhatNoneNames) {
@@ -480,7 +517,7 @@ TEST_F(Import, TakesLightFilesOfOtherHandsAndNamesWhatNoneNames) {
   const Json plan = imported();
   EXPECT_EQ(plan["imported"], 4) << plan["photographs"];
   for (const char* name : {"rti", "again", "dome", "owl"})
-    EXPECT_TRUE(fs::exists(archive_ / (std::string(name) + ".photos") / "light_directions.txt")) << name;
+    EXPECT_TRUE(fs::exists(archive_ / (std::string(name) + ".weft") / "photographs/lights.lp")) << name;
   ASSERT_EQ(plan["left_over"].size(), 1U) << plan["left_over"];
   EXPECT_THAT(plan["left_over"].dump(), AllOf(HasSubstr("other.exr"), HasSubstr("no light file names it")));
   EXPECT_THAT(plan["photographs"].dump(), HasSubstr("in the order of their names, 01.exr to 06.exr"));
@@ -494,7 +531,7 @@ TEST_F(Import, RefusesAPhotographThatIsCut) {
   const Outcome run = import();
   EXPECT_EQ(run.exit_code, 65) << run.error;
   EXPECT_THAT(run.json()["photographs"][0]["error"].dump(), HasSubstr(sample.name_of(3)));
-  EXPECT_FALSE(fs::exists(archive_ / "buddha.photos"));
+  EXPECT_FALSE(fs::exists(archive_ / "buddha.weft"));
 }
 
 TEST_F(Import, AsksBeforeItImports) {

@@ -140,7 +140,7 @@ TEST_F(RealPhotographs, OfMattObjectsLeaveRobustNoBlockThatStandardPredictsBette
   for (const char* object : {"frog", "turtle"}) {
     solve::PhotoOptions options;
     options.folder = data_ / object;
-    options.transfer = Transfer::kLinear;
+    options.reading.transfer = Transfer::kLinear;
     const Result<solve::SolvePlan> plan = solve::plan_photos(options);
     ASSERT_TRUE(plan) << plan.error().message();
     const Result<solve::Photographs> photographs = solve::load_photographs(*plan, {});

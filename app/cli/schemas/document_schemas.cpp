@@ -15,7 +15,6 @@
 #include "library/batch/outcome.h"
 #include "library/batch/plan.h"
 #include "library/chain/chain.h"
-#include "library/import/photographs_import.h"
 #include "library/run/merge_batch.h"
 #include "material/run/map_set_facts.h"
 #include "material/run/rectify.h"
@@ -44,8 +43,6 @@ const std::vector<DocumentSchema>& document_schemas() {
       {"weft.calibration-check", "result.json: whether a rig is as it was calibrated",
        fields_of<calibration::CheckResult>},
       {"weft.rig-look", "rig.json of a session: what it shows of its rig", fields_of<calibration::RigLook>},
-      {"weft.photographs", "photographs.json: photographs under distant lights that were imported",
-       fields_of<library::ImportedPhotographs>},
       {"weft.set", "set.json: photographs for a step of a calibration",
        fields_of<calibration::PhotographSet>},
       {"weft.solve", "solve.json: what a solve was made of and says of itself", fields_of<SolveFacts>},

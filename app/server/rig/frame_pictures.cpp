@@ -16,6 +16,7 @@
 #include "capture/scan/histogram.h"
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
+#include "core/image_io/linear_image.h"
 #include "core/rig/calibration.h"
 #include "report/downsampler.h"
 #include "report/preview.h"
@@ -96,6 +97,30 @@ void encode(Image<float>& picture, const std::array<float, 3>& gains) {
       }
     }
   }
+}
+
+struct SmallFrame {
+  Image<float> picture;
+  HistogramRgb histogram;
+};
+
+Result<SmallFrame> small_raw(const FrameFile& frame, const std::filesystem::path& calibration) {
+  const Result<RawFrame> raw = capture::decode_raw(frame.file);
+  if (!raw) return raw.error();
+  SmallFrame small = {reduced(capture::half_size_picture(*raw, Response{})),
+                      frame.histogram ? *frame.histogram : capture::histogram_rgb(*raw)};
+  const std::optional<std::array<float, 3>> white = frame_gains(frame.file, calibration);
+  encode(small.picture, white ? *white : grey_gains(small.picture));
+  return small;
+}
+
+// A photograph that somebody developed has its colours, and no counts.
+Result<SmallFrame> small_photograph(const std::filesystem::path& file) {
+  Result<Image<float>> read = read_linear_image(file, Transfer::kAuto, Clipped::kKeep);
+  if (!read) return std::move(read).error();
+  SmallFrame small = {reduced(std::move(*read)), {}};
+  encode(small.picture, {1, 1, 1});
+  return small;
 }
 
 }  // namespace
@@ -202,19 +227,17 @@ Result<void> FramePictures::make(const FrameFile& frame) {
 }
 
 Result<void> FramePictures::make_files(const FrameFile& frame) try {
-  const Result<RawFrame> raw = capture::decode_raw(frame.file);
-  if (!raw) return raw.error();
-  Image<float> picture = reduced(capture::half_size_picture(*raw, Response{}));
-  const std::optional<std::array<float, 3>> white = frame_gains(frame.file, calibration_());
-  encode(picture, white ? *white : grey_gains(picture));
+  const Result<SmallFrame> small =
+      is_linear_image(frame.file) ? small_photograph(frame.file) : small_raw(frame, calibration_());
+  if (!small) return small.error();
+  const Image<float>& picture = small->picture;
   if (Result<void> made = make_writable_folder(folder_); !made) return made;
   const std::vector<View<const float>> planes = {picture.plane(0), picture.plane(1), picture.plane(2)};
   WriteOptions options;
   options.type = SampleType::kUint8;
   if (Result<void> ok = write_image(path_of(frame, ".png"), planes, {"R", "G", "B"}, options); !ok) return ok;
-  const HistogramRgb histogram = frame.histogram ? *frame.histogram : capture::histogram_rgb(*raw);
   // The last of the two: where it is, both are.
-  return write_file(path_of(frame, ".json"), to_json(histogram).dump());
+  return write_file(path_of(frame, ".json"), to_json(small->histogram).dump());
 } catch (const std::exception& thrown) {
   return error_of_exception(thrown, frame.file.string());
 }

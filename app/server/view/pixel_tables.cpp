@@ -55,6 +55,20 @@ Error changed_since(const std::filesystem::path& session, const char* what) {
           "solve the session again"};
 }
 
+// Which lights these photographs of a session were taken under.
+Result<std::vector<int>> lights_of(const std::filesystem::path& folder,
+                                   const std::vector<DistantPhotograph>& photographs) {
+  const Result<Session> session = read_session(folder);
+  if (!session) return session.error();
+  std::vector<int> lights;
+  for (const DistantPhotograph& photograph : photographs) {
+    const auto shot = std::ranges::find(session->shots, photograph.file, &Shot::file);
+    if (shot == session->shots.end()) return changed_since(folder, "its photographs are others");
+    lights.push_back(shot->led);
+  }
+  return lights;
+}
+
 constexpr std::chrono::minutes kHeld(2);
 constexpr int kReaders = 2;  // threads: a scan may run beside
 
@@ -69,6 +83,11 @@ Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path
     if (shot.led > 0 && std::ranges::find(options.leds, shot.led) == options.leds.end())
       options.leds.push_back(shot.led);
   }
+  if (!input.photographs.empty()) {
+    Result<std::vector<int>> lights = lights_of(session, input.photographs);
+    if (!lights) return std::move(lights).error();
+    options.leds = std::move(*lights);
+  }
   if (options.leds.empty())
     return Error{ErrorKind::kBadData, "the solve has no readings", session.string(),
                  "it was not made from a session", "ask a solve of a session"};
@@ -76,7 +95,8 @@ Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path
   if (!plan) return std::move(plan).error();
   if (plan->input.calibration != input.calibration)
     return changed_since(session, "it was solved with another calibration than the session has");
-  if (plan->input.shots != input.shots) return changed_since(session, "its shots are others");
+  if (plan->input.shots != input.shots || plan->input.photographs != input.photographs)
+    return changed_since(session, "its shots are others");
 
   Result<solve::Photographs> loaded = solve::load_photographs(*plan, context);
   if (!loaded) return std::move(loaded).error();

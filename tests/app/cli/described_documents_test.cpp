@@ -13,7 +13,6 @@
 #include "core/base/files.h"
 #include "core/describe/field_json.h"
 #include "exchange/presets/export_facts.h"
-#include "library/import/photographs_import.h"
 #include "material/run/map_set_facts.h"
 #include "material/run/rectify.h"
 #include "solve/report/reflectance_facts.h"
@@ -52,7 +51,6 @@ const std::vector<Described>& all_described() {
                                              described<exchange::ExportFacts>("weft.export"),
                                              described<SolveFacts>("weft.solve"),
                                              described<calibration::CheckResult>("weft.calibration-check"),
-                                             described<library::ImportedPhotographs>("weft.photographs"),
                                              described<solve::ReflectanceFacts>("weft.reflectance"),
                                              described<solve::SolveReportFacts>("weft.solve-report")};
   return all;

@@ -221,8 +221,8 @@ TEST(Session, NamesTheShotAndTheFieldThatIsWrong) {
               HasSubstr("shot 2: \"polariser\" is \"left\"; none, parallel or crossed"));
   EXPECT_THAT(said_of("led", -1), HasSubstr("shot 2: \"led\" must be a whole number of at least 0"));
   EXPECT_THAT(said_of("led", 1.5), HasSubstr("shot 2: \"led\" is 1.5; a whole number"));
-  EXPECT_THAT(said_of("exposure_us", 0), HasSubstr("shot 2: \"exposure_us\" must be a number above 0"));
-  EXPECT_THAT(said_of("iso", -100), HasSubstr("shot 2: \"iso\" must be a number above 0"));
+  EXPECT_THAT(said_of("exposure_us", 0), HasSubstr("has no exposure"));
+  EXPECT_THAT(said_of("iso", -100), HasSubstr("shot 2: \"iso\" must be a number of at least 0"));
   EXPECT_THAT(said_of("f_number", nullptr), HasSubstr("shot 2: \"f_number\" is null"));
   EXPECT_THAT(said_of("sha256", 3), HasSubstr("shot 2: \"sha256\" is 3; a text"));
   EXPECT_THAT(verdict([](Json& json) { json["shots"][2] = "dark"; }),

@@ -21,6 +21,7 @@
 #include "capture/scan/copy_request.h"
 #include "exchange/export/export_request.h"
 #include "library/chain/make.h"
+#include "library/import/import_request.h"
 #include "library/run/plan_batch.h"
 #include "library/run/run_batch.h"
 #include "material/assets/build_request.h"
@@ -184,6 +185,13 @@ Result<void> add_carried_place(JobSpec& spec, const JobPlaces& places) {
   return {};
 }
 
+// Sessions go where scans do; what the rig knows holds for frames of it.
+Result<void> add_archive(JobSpec& spec, const JobPlaces& places) {
+  if (!places.rig_file.empty()) add(spec, {"--rig", places.rig_file.string()});
+  add(spec, {"--output", places.sessions.string()});
+  return {};
+}
+
 Result<void> add_rig_file(JobSpec& spec, const JobPlaces& places) {
   if (places.rig_file.empty())
     return Error{ErrorKind::kNoInput, "there is no rig to plan for", places.rig, "", "serve one with --rig"};
@@ -248,6 +256,11 @@ const std::vector<JobKind>& job_kinds() {
       {"make", "Maps and exports, made final", {"make"}, {walk<library::MakeOptions>}},
       {"torture", "Hard cases", {"torture"}, {walk<torture::TortureRequest>}, add_carried_place},
       {"sample", "Sample cloth", {"sample"}, {walk<simulator::SampleRequest>}, add_carried_place},
+      {"import",
+       "Photographs become sessions",
+       {"import", "--yes"},
+       {walk<library::ImportRequest>},
+       add_archive},
       {"rig_plan",
        "Which light to add",
        {"rig", "plan", "--picture", kPlanPicture},

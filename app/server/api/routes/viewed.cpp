@@ -23,6 +23,7 @@
 #include "material/run/session_sets.h"
 #include "report/preview.h"
 #include "solve/session/current.h"
+#include "solve/session/solved.h"
 
 namespace weft::app {
 namespace {
@@ -222,6 +223,8 @@ Result<Viewed> find_solve_maps(const RigParts& parts, const std::string& name, c
     viewed.document = product->kind.document;
     viewed.solve = std::move(*facts);
   }
+  if (const auto pixel = solve::photographed_pixel(viewed.session); pixel && pixel->is_known)
+    viewed.mm_per_pixel = pixel->mm;
   if (Result<void> ok = add_layers(viewed); !ok) return std::move(ok).error();
   return viewed;
 }
@@ -302,7 +305,7 @@ Ground Lying::ground(const Viewed& viewed) const {
 }
 
 Result<Lying> lying_of(const Viewed& viewed) {
-  if (viewed.set) return Lying{};
+  if (viewed.set || !viewed.session.is_of_rig()) return Lying{};
   Result<Calibration> calibration = read_calibration(viewed.session.calibration_folder());
   if (!calibration) return std::move(calibration).error();
   if (calibration->camera) {

@@ -7339,6 +7339,30 @@ export interface components {
             /** @description Solve although the last check of this rig's calibration did not pass before the scan: the reason, which is kept */
             accept_moved?: string;
             /**
+             * @description How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb
+             * @default auto
+             * @enum {string}
+             */
+            transfer?: "auto" | "linear" | "srgb";
+            /**
+             * @description How photographs lie under their lights: shown (turned as their tag says), stored
+             * @default shown
+             * @enum {string}
+             */
+            orientation?: "shown" | "stored";
+            /**
+             * @description What is done to the directions of their lights: none, x, y, z or all turned round, left or right by a quarter, exchange (x for y), against (x for -y)
+             * @default none
+             * @enum {string}
+             */
+            flip?: "none" | "x" | "y" | "z" | "all" | "left" | "right" | "exchange" | "against";
+            /** @description Of the cloth, mm; positions of lights are then near lights, in mm over its middle */
+            mm_per_pixel?: number;
+            /** @description Of the picture's width, degrees; without it, it is seen from far away */
+            fov_deg?: number;
+            /** @description Light that is in all photographs, a share of full scale */
+            ambient?: number;
+            /**
              * @description Of EXR files: none, zip, piz
              * @default none
              * @enum {string}
@@ -7404,6 +7428,30 @@ export interface components {
             second_pose?: string;
             /** @description Solve although the last check of this rig's calibration did not pass before the scan: the reason, which is kept */
             accept_moved?: string;
+            /**
+             * @description How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb
+             * @default auto
+             * @enum {string}
+             */
+            transfer?: "auto" | "linear" | "srgb";
+            /**
+             * @description How photographs lie under their lights: shown (turned as their tag says), stored
+             * @default shown
+             * @enum {string}
+             */
+            orientation?: "shown" | "stored";
+            /**
+             * @description What is done to the directions of their lights: none, x, y, z or all turned round, left or right by a quarter, exchange (x for y), against (x for -y)
+             * @default none
+             * @enum {string}
+             */
+            flip?: "none" | "x" | "y" | "z" | "all" | "left" | "right" | "exchange" | "against";
+            /** @description Of the cloth, mm; positions of lights are then near lights, in mm over its middle */
+            mm_per_pixel?: number;
+            /** @description Of the picture's width, degrees; without it, it is seen from far away */
+            fov_deg?: number;
+            /** @description Light that is in all photographs, a share of full scale */
+            ambient?: number;
         };
         /** Rectified maps */
         RectifyJob: {
@@ -7488,6 +7536,90 @@ export interface components {
             kind: "sample";
             /** @description A plain word: the same once more is the same job, and asks nothing new */
             request_id?: string;
+        };
+        /** Photographs become sessions */
+        ImportJob: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "import";
+            /** @description A plain word: the same once more is the same job, and asks nothing new */
+            request_id?: string;
+            /** @description Folders of raws (NEF, CR2, DNG ...), linear TIFF or EXR frames, or photographs with a light file; below the rig file's folder */
+            folders: string | string[];
+            /** @description Calibration folder of the rig that took the photographs; below the rig file's folder */
+            calibration?: string;
+            /** @description What names say: {session}/{fabric}_{led}.{ext}; also {index}, {any}; LED 0 or dark is no LED */
+            pattern?: string;
+            /**
+             * @description What tells LEDs: auto (numbers in names, else times and names where they agree), time, name, light (the LED that explains a frame's brightness)
+             * @default auto
+             * @enum {string}
+             */
+            order?: "auto" | "time" | "name" | "light";
+            /**
+             * @description How a session has its frames: hard (links), copy, symbolic
+             * @default hard
+             * @enum {string}
+             */
+            link?: "hard" | "copy" | "symbolic";
+            /**
+             * @description Seconds between two sessions in one folder
+             * @default 60
+             */
+            gap_s?: number;
+            /** @description Of the cloth's surface above the table, where no import.toml says it; default the rig's, or 0 */
+            height_mm?: number;
+            /**
+             * @description Take sessions that lack LEDs, where names or the light tell which
+             * @default false
+             */
+            missing?: boolean;
+            /**
+             * @description Tell the lights of photographs from a chrome, glossy or matt ball in them; each folder is then one session
+             * @default false
+             */
+            ball?: boolean;
+            /** @description Photographs of the ball alone under the same lamps, by name or in the same order; below the rig file's folder */
+            ball_folder?: string;
+            /**
+             * @description What the ball is: auto, chrome, glossy, matt. Strengths of a mirror need it
+             * @default auto
+             * @enum {string}
+             */
+            ball_kind?: "auto" | "chrome" | "glossy" | "matt";
+            /**
+             * @description Diameter of the balls, mm: two of them tell where lamps are; 0: not known
+             * @default 0
+             */
+            ball_mm?: number;
+            /**
+             * @description How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb
+             * @default auto
+             * @enum {string}
+             */
+            transfer?: "auto" | "linear" | "srgb";
+            /**
+             * @description How photographs lie under their lights: shown (turned as their tag says), stored
+             * @default shown
+             * @enum {string}
+             */
+            orientation?: "shown" | "stored";
+            /**
+             * @description What is done to the directions of their lights: none, x, y, z or all turned round, left or right by a quarter, exchange (x for y), against (x for -y)
+             * @default none
+             * @enum {string}
+             */
+            flip?: "none" | "x" | "y" | "z" | "all" | "left" | "right" | "exchange" | "against";
+            /** @description Of the cloth, mm; positions of lights are then near lights, in mm over its middle */
+            mm_per_pixel?: number;
+            /** @description Of the picture's width, degrees; without it, it is seen from far away */
+            fov_deg?: number;
+            /** @description Light that is in all photographs, a share of full scale */
+            ambient?: number;
+            /** @description Of photographs that no rig took, the one with all lamps off; below the rig file's folder */
+            dark?: string;
         };
         /** Which light to add */
         RigPlanJob: {
@@ -8347,7 +8479,7 @@ export interface components {
             /** @description That a session may hold, else it is lost alone: 1500M, 2G */
             memory_mb?: number;
         };
-        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["SampleJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["RigCheckJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["FinishPriceJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateCameraPriceJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateLightsPriceJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
+        JobRequest: components["schemas"]["SolveJob"] | components["schemas"]["PriceJob"] | components["schemas"]["RectifyJob"] | components["schemas"]["CopyJob"] | components["schemas"]["MakeJob"] | components["schemas"]["TortureJob"] | components["schemas"]["SampleJob"] | components["schemas"]["ImportJob"] | components["schemas"]["RigPlanJob"] | components["schemas"]["RigCheckJob"] | components["schemas"]["MapsJob"] | components["schemas"]["MapsPriceJob"] | components["schemas"]["FinishJob"] | components["schemas"]["FinishPriceJob"] | components["schemas"]["ExportJob"] | components["schemas"]["ExportPriceJob"] | components["schemas"]["MaterialJob"] | components["schemas"]["CheckJob"] | components["schemas"]["CalibrateCameraJob"] | components["schemas"]["CalibrateCameraPriceJob"] | components["schemas"]["CalibrateResponseJob"] | components["schemas"]["CalibrateColorJob"] | components["schemas"]["CalibrateLightsJob"] | components["schemas"]["CalibrateLightsPriceJob"] | components["schemas"]["CalibrateGreyJob"] | components["schemas"]["CalibratePatchesJob"] | components["schemas"]["CalibrateUpdateJob"] | components["schemas"]["BatchPlanJob"] | components["schemas"]["BatchRunJob"];
     };
     responses: {
         /** @description Not a request that can be read */
