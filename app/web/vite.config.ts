@@ -42,7 +42,7 @@ export default defineConfig({
     reportCompressedSize: false,
     sourcemap: false,
     minify: 'terser',  // a sixtieth smaller than esbuild makes it
-    terserOptions: {ecma: 2020, module: true, compress: {ecma: 2020, passes: 3, pure_getters: true, unsafe_arrows: true}},
+    terserOptions: {ecma: 2020, module: true, compress: {ecma: 2020, passes: 3, pure_getters: true, unsafe_arrows: true, hoist_funs: true}},
     rollupOptions: {
       output: {
         chunkFileNames: 'assets/[name]-[hash].js',

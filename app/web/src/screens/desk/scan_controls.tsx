@@ -33,7 +33,7 @@ function Cancel({onClose}: {onClose: () => void}) {
   const cancel = useAction(() => ask('cancel'));
   return (
     <Dialog title="Cancel the scan?" onClose={onClose}>
-      <p>The shot on its way is finished. What is photographed is kept, and the same cloth goes on from there.</p>
+      <p>The shot on its way is finished. What is photographed is kept, and goes on from there.</p>
       <Complaint error={cancel.complaint} />
       <form method="dialog" class="row">
         <Button kind="danger" onClick={() => void cancel.run().then((done) => done && onClose())}>Cancel the scan</Button>

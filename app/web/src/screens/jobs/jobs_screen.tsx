@@ -27,7 +27,7 @@ export default function JobsScreen() {
       {isOfHardCases && <HardCases />}
       {(session || isOfHardCases) && <div><Button kind="quiet" onClick={() => amend({price: null, hard: null})}>Only the jobs</Button></div>}
       {jobs.value.length === 0 && (
-        <Empty says="Nothing was asked for yet. Sessions are solved, priced and rectified here.">
+        <Empty says="Nothing was asked for yet.">
           <a href="/sessions">Choose one from the library</a>
         </Empty>
       )}

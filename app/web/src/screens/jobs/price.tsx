@@ -48,7 +48,7 @@ export function Price({session}: {session: string}) {
       {priced && !hasEnded(priced) && <Share label="Price" share={priced.share} left_s={priced.left_s} />}
       {priced?.state === 'failed' && <Complaint error={errorOf(priced)} />}
       {levels.length === 0 && (!priced || hasEnded(priced)) && (
-        <Empty says="A cut from the middle of this cloth is solved at every level: some seconds tell what each would cost and give.">
+        <Empty says="A cut from the middle is solved at every level: seconds tell what each costs and gives.">
           <Button kind="main" onClick={price}>Measure the levels</Button>
         </Empty>
       )}
@@ -89,7 +89,7 @@ function Levels({job, levels, onSolve}: LevelsProps) {
 }
 
 /** What a job that failed says, as a complaint. */
-export function errorOf(job: Job): Pick<ApiError, 'what' | 'where' | 'why' | 'remedy'> {
+export function errorOf(job: {readonly error?: unknown}): Pick<ApiError, 'what' | 'where' | 'why' | 'remedy'> {
   const said = (job.error ?? {}) as Partial<Record<'what' | 'where' | 'why' | 'remedy', string>>;
   return {what: said.what ?? 'The job failed.', where: said.where ?? '', why: said.why ?? '', remedy: said.remedy ?? ''};
 }

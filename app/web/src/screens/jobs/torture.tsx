@@ -21,7 +21,7 @@ export function AskHardCases() {
   return (
     <>
       <Button isDisabled={ask.isBusy} onClick={() => void ask.run()}>Hard cases</Button>
-      <p class="dim">What is hard in each stage, capture to export: how far off a plain formula is, and weft, and what weft says of it.</p>
+      <p class="dim">What is hard in each stage: how far off a plain formula is, and weft, and what weft says of it.</p>
       <Complaint error={ask.complaint} />
     </>
   );

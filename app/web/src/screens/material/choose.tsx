@@ -61,7 +61,7 @@ export function CurrentMaps({session}: {session: string}) {
     <section class="page">
       <h1>{clothOf(session)}</h1>
       <Complaint error={complaint} />
-      {hasNone && <><p class="dim">A material is made of maps: normals, albedo, height, occlusion, roughness. None were made of this session yet.</p><MakeMaps session={session} /></>}
+      {hasNone && <><p class="dim">No maps were made of this session yet.</p><MakeMaps session={session} /></>}
     </section>
   );
 }

@@ -29,7 +29,7 @@ export function Frames({session, onChanged}: FramesProps) {
           <li key={frame.index}>
             <a href={frame.raw} download><img src={frame.thumbnail} alt={titleOf(frame)} loading="lazy" decoding="async" /></a>
             <strong>{titleOf(frame)}</strong>
-            <span class="dim numbers">{shutter(frame.exposure_us)}, ISO {frame.iso}, f/{frame.f_number}</span>
+            {frame.exposure_us > 0 && <span class="dim numbers">{shutter(frame.exposure_us)}, ISO {frame.iso}, f/{frame.f_number}</span>}
             <Clipping frame={frame} />
             {frame.warnings.map((warning) => <span key={warning} class="warning">{warning}</span>)}
             {frame.role === 'lit' && (

@@ -14,6 +14,7 @@ import {VirtualList} from '../../ui/virtual_list';
 import {BatchBar} from './batch_bar';
 import {addressOf, filtersIn, isNarrowed, type Filters, noFilters, states} from './filters';
 import {LastWord} from './last_word';
+import {Photographs} from './photographs';
 import {SessionTile} from './session_tile';
 import {all, extended, nothing, toggled} from './selection';
 import {askMore, askTags, complaint, look, shelf, tags} from './shelf';
@@ -68,6 +69,7 @@ export function Library() {
       <FilterBar filters={filters} onChange={(changed: Filters) => amend(addressOf(changed))} />
       <div class="wall">
         <Complaint error={complaint.value} />
+        <Photographs onMade={again} />
         {isKnown && total === 0 && <Nothing isNarrowed={isNarrowed(filters)} />}
         <VirtualList label="Sessions" count={total} least_px={least_px} more_px={words_px} keyOf={(index) => names[index] ?? index}
           onRange={(range) => setEnd(range.end)} render={(index) => {

@@ -71,9 +71,8 @@ function Facts({one: {session}}: {one: OneSession}) {
   return (
     <div class="row facts">
       <span class="dim">{session.name}</span>
-      {session.frames[0] && <span class="dim numbers">{timeOf(session.frames[0].time)}</span>}
-      <span class="dim">cloth {session.cloth_height_mm} mm high</span>
-      <span class="dim">calibration {session.calibration.slice(0, 12)}</span>
+      {session.frames[0]?.time && <span class="dim numbers">{timeOf(session.frames[0].time)}</span>}
+      {session.calibration && <span class="dim">cloth {session.cloth_height_mm} mm high, calibration {session.calibration.slice(0, 12)}</span>}
       <Copy what="Copy its path" text={session.folder} />
       {session.resumable && <Finish name={session.name} />}
     </div>

@@ -102,7 +102,7 @@ export default function TourScreen() {
           {hasRig && <li><a class="button main" href="/desk">Scan</a><p>Lay a cloth on the table; the desk says what to press.</p></li>}
           <li>
             <a class="button" href="/sessions">Look</a>
-            <p>{archive && counted(archive.total, 'cloth')} in the library.{!hasRig && ' This server has no rig: it shows archives.'}</p>
+            <p>{archive && counted(archive.total, 'cloth')} in the library, which takes photographs of your own.{!hasRig && ' This server has no rig: it shows archives.'}</p>
           </li>
           <li>
             <Simulated says="Try it without a rig" isMain={!hasRig && !session} onMade={again} />

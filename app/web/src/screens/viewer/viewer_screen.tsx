@@ -145,7 +145,7 @@ function MeasureHint({viewer}: {viewer: Viewer}) {
   if (line || box) return null;
   return (
     <section>
-      <p class="dim">Take the ruler and drag from one end to the other. Take the rectangle and drag over a part of the cloth. By keys: arrows lead the mark, Shift farther, Enter sets an end.</p>
+      <p class="dim">Drag the ruler from end to end, or the rectangle over a part of the cloth. Arrows lead the mark, Shift farther, Enter sets an end.</p>
     </section>
   );
 }
