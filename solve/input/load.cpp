@@ -83,7 +83,7 @@ Result<std::vector<Photosite>> photosites_named_by(const std::filesystem::path& 
 
 Result<std::optional<Image<std::uint8_t>>> mask_of(const SolvePlan& plan) {
   if (plan.mask.empty()) return std::optional<Image<std::uint8_t>>();
-  Result<Image<std::uint8_t>> mask = read_mask(plan.mask, plan.size);
+  Result<Image<std::uint8_t>> mask = read_mask(plan.mask, plan.size, plan.mask_orientation);
   if (!mask) return std::move(mask).error();
   return std::optional(std::move(*mask));
 }

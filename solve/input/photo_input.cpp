@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "capture/frames/picture_meaning.h"
 #include "core/base/files.h"
 #include "solve/input/light_axes.h"
 #include "solve/input/light_list.h"
@@ -103,9 +104,13 @@ fs::path name_of_source(const PhotoOptions& options) {
   return source.has_filename() ? source.stem() : source.parent_path().filename();
 }
 
-Result<void> look_at_mask(SolvePlan& plan) {
+Result<void> look_at_mask(PictureOrientation orientation, SolvePlan& plan) {
   if (plan.mask.empty()) return {};
-  if (const auto mask = read_mask(plan.mask, plan.size); !mask) return mask.error();
+  const Result<capture::PictureMeaning> picture = capture::meaning_of_picture(plan.mask);
+  if (!picture) return picture.error();
+  if (orientation == PictureOrientation::kShown) plan.mask_orientation = picture->orientation;
+  const auto mask = read_mask(plan.mask, plan.size, plan.mask_orientation);
+  if (!mask) return mask.error();
   const Result<std::string> digest = sha256_of_file(plan.mask);
   if (!digest) return digest.error();
   plan.input.mask = *digest;
@@ -134,7 +139,8 @@ Result<SolvePlan> plan_photos(const PhotoOptions& options) {
                  "give at least three photographs under different lights"};
   }
   if (Result<void> looked = look_at_pictures(options, *plan); !looked) return std::move(looked).error();
-  if (Result<void> looked = look_at_mask(*plan); !looked) return std::move(looked).error();
+  if (Result<void> looked = look_at_mask(options.reading.orientation, *plan); !looked)
+    return std::move(looked).error();
   if (list->are_positions && options.reading.mm_per_pixel) stand_near(options, *list, *plan);
   const std::string name = name_of_source(options).string();
   plan->where = plan->session.fabric = name;

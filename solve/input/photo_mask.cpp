@@ -80,9 +80,11 @@ Result<fs::path> find_mask(const fs::path& folder) {
                "leave the one that is right"};
 }
 
-Result<Image<std::uint8_t>> read_mask(const fs::path& file, Size size) {
-  const Result<LoadedImage> mask = read_image(file);
-  if (!mask) return mask.error();
+Result<Image<std::uint8_t>> read_mask(const fs::path& file, Size size, int orientation) {
+  Result<LoadedImage> mask = read_image(file);
+  if (!mask) return std::move(mask).error();
+  mask->planes = as_shown(std::move(mask->planes), orientation);
+  mask->info.size = mask->planes.size();
   if (mask->info.size != size) {
     return Error{ErrorKind::kBadData, "mask differs in size", file.string(),
                  fmt::format("{} x {} pixels, the photographs have {} x {}", mask->info.size.width,

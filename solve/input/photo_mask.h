@@ -20,8 +20,8 @@ Result<std::filesystem::path> find_mask(const std::filesystem::path& folder);
 
 /// 1 where cloth is, of photographs of this size: where the brightest colour is over one half, and so is the
 /// alpha, if there is one. Where all have one colour, alpha alone tells. A mask of the counts 0 and 1 is
-/// taken for one of black and white. kBadData where the size is another, where no pixel is left, and where
-/// nothing is over one half although there is more than black.
-Result<Image<std::uint8_t>> read_mask(const std::filesystem::path& file, Size size);
+/// taken for one of black and white. It is turned by its own orientation first. kBadData where the size is
+/// another, where no pixel is left, and where nothing is over one half although there is more than black.
+Result<Image<std::uint8_t>> read_mask(const std::filesystem::path& file, Size size, int orientation);
 
 }  // namespace weft::solve

@@ -34,6 +34,7 @@ struct SolvePlan {
   double ambient = 0;                     ///< that is taken from developed photographs, a share of full scale
   bool transfer_is_custom = false;        ///< neither the files nor a person said how values follow light
   std::filesystem::path mask;             ///< where the cloth is; empty: every pixel counts
+  int mask_orientation = 1;               ///< that the mask is turned by
   Transfer transfer = Transfer::kLinear;  ///< kAuto: files differ, and each is taken by its own kind
   Clipped clipped = Clipped::kMark;
   SolveInput input;                   ///< for solve.json, and what the id of the solve is made of

@@ -114,6 +114,23 @@ TEST_F(PhotographHeaders, StoredBottomUpTheyAreSolvedAsTheyAreShown) {
   EXPECT_NE(run.output.find("orientation 4: mirrored top to bottom"), std::string::npos) << run.output;
 }
 
+TEST_F(PhotographHeaders, AMaskIsTurnedByItsOwn) {
+  // The upper third is cloth, stored at the bottom of a mask that is to be shown mirrored.
+  Image<float> mask({40, 30});
+  for (int y = 20; y < 30; ++y) std::fill_n(mask.plane().row(y), 40, 1.0F);
+  const std::array<View<const float>, 1> planes = {mask.plane()};
+  ASSERT_TRUE(write_image(folder_ / "mask.png", planes, {"Y"}, {.type = SampleType::kUint8}));
+  add_exif(folder_ / "mask.png", exif_of(4));
+  const auto solved_at = [&](int row) {
+    const Outcome run = solve();
+    EXPECT_EQ(run.exit_code, 0) << run.error;
+    const Result<LoadedImage> albedo = read_image(maps_ / "albedo.exr");
+    return albedo && albedo->channel("R")(20, row) > 0;
+  };
+  EXPECT_TRUE(solved_at(5)) << "the upper third, as it is shown";
+  EXPECT_FALSE(solved_at(25));
+}
+
 TEST_F(PhotographHeaders, OfOneThatIsToBeShownTurnedThePersonDecides) {
   add_exif(photograph(2), exif_of(6));
   expect_refused(
