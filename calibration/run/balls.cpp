@@ -9,7 +9,10 @@
 #include <system_error>
 #include <utility>
 
+#include "capture/camera/photograph_facts.h"
 #include "capture/frames/picture_meaning.h"
+#include "capture/frames/raw_picture.h"
+#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/base/text.h"
 #include "core/image_io/image_io.h"
@@ -26,19 +29,27 @@ constexpr const char* kPictureName = "balls.png";
 constexpr double kMaskMargin = 1.05;  // of the radius: an edge is blurred, and throws light about it
 constexpr double kNearLamps_deg = 0.5;
 
+bool is_raw_name(const fs::path& file) {
+  const std::string ending = small_letters(file.extension().string());
+  return ending.size() > 1 && capture::is_raw_ending(ending.substr(1));
+}
+
+/// Raws, where there are any: what lies beside them shows the same.
 Result<std::vector<fs::path>> pictures_in(const fs::path& folder) {
-  std::vector<fs::path> files;
+  std::vector<fs::path> files, raws;
   std::error_code failed;
   for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
-    const std::string name = entry->path().filename().string();
-    if (is_linear_image(entry->path()) && !name.starts_with('.') && name != kPictureName &&
-        !solve::is_mask_name(entry->path()))
-      files.push_back(entry->path());
+    const fs::path& file = entry->path();
+    const std::string name = file.filename().string();
+    if (name.starts_with('.') || name == kPictureName || solve::is_mask_name(file)) continue;
+    if (is_raw_name(file)) raws.push_back(file);
+    if (is_linear_image(file)) files.push_back(file);
   }
   if (failed) return cannot_read(folder, failed.value());
+  if (!raws.empty()) files = std::move(raws);
   if (files.empty())
     return Error{ErrorKind::kNoInput, "there are no photographs", folder.string(),
-                 "no TIFF, PNG, EXR or JPEG is there", "name the folder of the photographs"};
+                 "no raw, TIFF, PNG, EXR or JPEG is there", "name the folder of the photographs"};
   std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
     return stands_before(a.filename().string(), b.filename().string());
   });
@@ -83,6 +94,34 @@ Image<float> grey_of(const Image<float>& rgb, int by) {
   return grey;
 }
 
+/// A photograph as it is shown, linear; a mosaic by cells of its filters, and as it is stored.
+struct ReadPicture {
+  Image<float> rgb;
+  Size size;     ///< of the photograph
+  int cell = 1;  ///< pixels of it that one of `rgb` is across
+};
+
+Result<ReadPicture> read_picture(const fs::path& file, Transfer transfer) {
+  const Result<capture::PictureMeaning> meaning = capture::meaning_of_picture(file);
+  if (!meaning) return meaning.error();
+  if (meaning->is_raw) {
+    const Result<RawFrame> raw = capture::decode_raw(file);
+    if (!raw) return raw.error();
+    Image<float> rgb = capture::half_size_picture(*raw, Response{});
+    for (int c = 0; c < rgb.planes(); ++c) {
+      for (int y = 0; y < rgb.height(); ++y) {
+        for (int x = 0; x < rgb.width(); ++x) rgb(x, y, c) = std::min(rgb(x, y, c), 1.0F);
+      }
+    }
+    return ReadPicture{std::move(rgb), raw->counts.size(), 2};
+  }
+  Result<Image<float>> rgb = read_linear_image(file, transfer, Clipped::kKeep);
+  if (!rgb) return std::move(rgb).error();
+  Image<float> shown = as_shown(std::move(*rgb), meaning->orientation);
+  const Size size = shown.size();
+  return ReadPicture{std::move(shown), size};
+}
+
 struct ReadShots {
   BallPhotographs photographs;
   Size size;
@@ -92,21 +131,20 @@ struct ReadShots {
 Result<ReadShots> read_shots(const std::vector<fs::path>& files, Transfer transfer) {
   ReadShots read;
   for (const fs::path& file : files) {
-    const Result<capture::PictureMeaning> meaning = capture::meaning_of_picture(file);
-    if (!meaning) return meaning.error();
-    Result<Image<float>> rgb = read_linear_image(file, transfer, Clipped::kKeep);
-    if (!rgb) return std::move(rgb).error();
-    *rgb = as_shown(std::move(*rgb), meaning->orientation);
+    const Result<ReadPicture> picture = read_picture(file, transfer);
+    if (!picture) return picture.error();
     if (read.photographs.shots.empty()) {
-      read.size = rgb->size();
-      read.by = std::max(1, (std::max(read.size.width, read.size.height) + kLongestSide - 1) / kLongestSide);
+      const Size seen = picture->rgb.size();
+      read.size = picture->size;
+      read.by =
+          picture->cell * std::max(1, (std::max(seen.width, seen.height) + kLongestSide - 1) / kLongestSide);
     }
-    if (rgb->size() != read.size)
+    if (picture->size != read.size)
       return Error{ErrorKind::kBadData, "photographs differ in size", file.string(),
-                   fmt::format("{} x {} pixels, the first has {} x {}", rgb->width(), rgb->height(),
-                               read.size.width, read.size.height),
+                   fmt::format("{} x {} pixels, the first has {} x {}", picture->size.width,
+                               picture->size.height, read.size.width, read.size.height),
                    "use photographs of one camera that was not moved"};
-    read.photographs.shots.push_back(grey_of(*rgb, read.by));
+    read.photographs.shots.push_back(grey_of(picture->rgb, read.by / picture->cell));
     read.photographs.names.push_back(file.string());
   }
   return read;

@@ -36,11 +36,12 @@ struct BallsReport {
   std::vector<std::string> notes;
 };
 
-/// Reads all photographs of the folder, masks and balls.png left out, and writes the light file; balls.png
-/// beside it, with circles and highlights; and where the ball is in them mask.png, which keeps it out of a
-/// solve. Balls photographed before go by name, else by order as people count. Photographs of more than 2000
-/// pixels are looked at in squares' means. Errors of lights_of_balls() and of reading; kNoInput without
-/// photographs; kBadData where they differ in size or number; kCannotCreate for a file that is there.
+/// Reads all photographs of the folder, masks and balls.png left out; raws, if there are any, else the
+/// others. Writes the light file; balls.png beside it, with circles and highlights; and where the ball is in
+/// them mask.png, which keeps it out of a solve. Balls photographed before go by name, else by order as
+/// people count. Photographs of more than 2000 pixels are looked at in squares' means. Errors of
+/// lights_of_balls() and of reading; kNoInput without photographs; kBadData where they differ in size or
+/// number; kCannotCreate for a file that is there.
 Result<BallsReport> lights_by_balls(const BallsOptions& options);
 
 Json json_of(const BallsReport& report);

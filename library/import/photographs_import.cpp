@@ -16,6 +16,7 @@
 #include "core/image_io/image_io.h"
 #include "library/import/description.h"
 #include "solve/input/photo_input.h"
+#include "solve/input/photo_mask.h"
 #include "solve/input/session_photos.h"
 
 namespace weft::library {
@@ -214,9 +215,11 @@ std::vector<ProposedPhotographs> plan_photographs_with_balls(const ImportOptions
       continue;
     }
     solve::PhotoOptions photos;
-    photos.folder = folder;
     photos.light_file = report->list.file;
     photos.mask = report->mask;
+    if (photos.mask.empty()) {
+      if (Result<fs::path> own = solve::find_mask(folder)) photos.mask = std::move(*own);
+    }
     photos.dark = options.dark;
     photos.reading = options.reading;
     if (!photos.reading.mm_per_pixel) photos.reading.mm_per_pixel = report->mm_per_pixel;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/image_io/image_io.h"
+#include "core/rig/session.h"
 #include "simulator/scene/scene_rig.h"
 #include "simulator/simulate.h"
 #include "tests/system/program.h"
@@ -99,6 +100,51 @@ TEST_F(LightsByBall, AFolderWithABallAndNoLightFileIsSolvedWithoutTheBall) {
   const Outcome again = run_weft(lights({"--ball"}));
   EXPECT_EQ(again.exit_code, 73) << again.error;
   EXPECT_THAT(again.error, testing::HasSubstr("lights.lp"));
+}
+
+TEST_F(LightsByBall, AnImportedFolderIsASessionWithTheLightsOfItsBall) {
+  photograph(work_ / "cloth", true);
+  const fs::path session = work_ / "archive" / "cloth.weft";
+  const Outcome imported = run_weft(
+      {"import", (work_ / "cloth").string(), "-o", (work_ / "archive").string(), "--ball", "--yes", "-q"});
+  ASSERT_EQ(imported.exit_code, 0) << imported.error;
+  EXPECT_FALSE(fs::exists(work_ / "cloth" / "lights.lp")) << "photographs are opened for reading alone";
+  for (const char* file : {"balls.png", "photographs/mask.png", "photographs/lights.lp"})
+    EXPECT_TRUE(fs::exists(session / file)) << file;
+  ASSERT_EQ(run_weft(lights({"--ball"})).exit_code, 0);
+  const Outcome solve = run_weft({"solve", session.string(), "-q", "--no-previews", "--json"});
+  ASSERT_EQ(solve.exit_code, 0) << solve.error;
+  const Outcome lone = run_weft({"solve", "--photos", (work_ / "cloth").string(), "-q", "--no-previews",
+                                 "--json", "-o", (work_ / "maps").string()});
+  ASSERT_EQ(lone.exit_code, 0) << lone.error;
+  EXPECT_EQ(solve.json()["pixels"], lone.json()["pixels"]) << "the ball is no cloth";
+}
+
+TEST_F(LightsByBall, RawsShowABallToo) {
+  simulator::Scene scene;
+  scene.camera.width = 640;
+  scene.camera.height = 480;
+  scene.camera.mm_per_pixel = 0.25;
+  scene.camera.distance_mm = kDistance_mm;
+  simulator::BallSettings& ball = scene.balls.emplace_back();
+  ball.centre_mm = {20, -12, 33};
+  ball.radius_mm = 28;
+  ball.highlight_deg = 2;
+  const auto written = simulator::simulate_session(scene, work_ / "cloth.weft",
+                                                   {.tiles = {}, .stop = {}, .progress = {}, .truth = false});
+  ASSERT_TRUE(written) << written.error().message();
+  fs::create_directories(work_ / "cloth");
+  const Result<Session> session = read_session(work_ / "cloth.weft");
+  ASSERT_TRUE(session) << session.error().message();
+  for (const Shot& shot : session->shots) {
+    if (shot.role == ShotRole::kLit)
+      fs::copy(work_ / "cloth.weft" / shot.file, work_ / "cloth" / fs::path(shot.file).filename());
+  }
+  const Outcome told = run_weft(lights({"--json", "--ball"}));
+  ASSERT_EQ(told.exit_code, 0) << told.error;
+  expect_true(told.json(), scene);
+  const Json circle = told.json()["balls"][0];
+  EXPECT_NEAR(circle["radius"].get<double>(), 28 / 0.25 * kDistance_mm / (kDistance_mm - 33), 1);
 }
 
 TEST_F(LightsByBall, ABallPhotographedFirstGoesByName) {
