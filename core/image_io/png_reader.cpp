@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 #include "core/base/files.h"
 #include "core/image_io/color_profile.h"
@@ -20,6 +21,9 @@ std::string attribute_of_keyword(const std::string& keyword) {
   return keyword;
 }
 
+// The name of a chunk that libpng does not know, as it wants it.
+constexpr png_byte kCicp[] = {'c', 'I', 'C', 'P', 0};
+
 class PngSource : public ImageSource {
  public:
   explicit PngSource(const fs::path& file)
@@ -36,6 +40,7 @@ class PngSource : public ImageSource {
   std::string open() {
     if (header_ == nullptr) return "the file format library gives no reason";
     const bool done = png_does(png_, [this] {
+      png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_ALWAYS, kCicp, 1);
       png_init_io(png_, file_);
       png_read_info(png_, header_);
     });
@@ -122,7 +127,31 @@ class PngSource : public ImageSource {
     info_.attributes = attributes_of_texts(std::move(attributes));
   }
 
+  // The transfer function that cICP names (ITU-T H.273), which stands above all others; kData: none.
+  ColorSpace color_of_code_points() {
+    png_unknown_chunkp chunks = nullptr;
+    const int count = png_get_unknown_chunks(png_, header_, &chunks);
+    for (int i = 0; i < count; ++i) {
+      if (std::memcmp(chunks[i].name, kCicp, 4) != 0 || chunks[i].size != 4) continue;
+      switch (chunks[i].data[1]) {
+        case 2:  // unspecified
+          return ColorSpace::kData;
+        case 4:
+          return color_of_gamma(2.2);
+        case 8:
+          return ColorSpace::kLinearColor;
+        case 13:
+          return ColorSpace::kSrgb;
+        default:
+          return ColorSpace::kOther;
+      }
+    }
+    return ColorSpace::kData;
+  }
+
   ColorSpace color() {
+    info_.color_by = "its chunk cICP";
+    if (const ColorSpace told = color_of_code_points(); told != ColorSpace::kData) return told;
     png_charp name = nullptr;
     png_bytep profile = nullptr;
     png_uint_32 bytes = 0;

@@ -157,6 +157,28 @@ TEST(ColorSpaceOfAFile, FollowsTheGammaOfAPng) {
   }
 }
 
+// By the numbers of ITU-T H.273; those of gAMA stand below.
+TEST(ColorSpaceOfAFile, FollowsTheCodePointsOfAPng) {
+  const ScratchFolder folder;
+  write(folder / "a.png", {.type = SampleType::kUint8});
+  const auto chunk_of = [](const std::string& chunk) {
+    return big_endian(static_cast<std::uint32_t>(chunk.size() - 4)) + chunk + big_endian(crc_of(chunk));
+  };
+  for (const auto& [transfer, color] :
+       {std::pair{char{8}, ColorSpace::kLinearColor}, std::pair{char{13}, ColorSpace::kSrgb},
+        std::pair{char{4}, ColorSpace::kSrgb}, std::pair{char{16}, ColorSpace::kOther},
+        std::pair{char{18}, ColorSpace::kOther}, std::pair{char{2}, ColorSpace::kLinearColor}}) {
+    constexpr std::size_t kAfterHeader = 33;
+    std::string png = bytes_of(folder / "a.png");
+    png.insert(kAfterHeader, chunk_of("gAMA" + big_endian(100000)) +
+                                 chunk_of(std::string("cICP") + char{1} + transfer + char{0} + char{1}));
+    std::ofstream(folder / "c.png", std::ios::binary) << png;
+    const auto info = read_image_info(folder / "c.png");
+    ASSERT_TRUE(info) << info.error().message();
+    EXPECT_EQ(info->color, color) << static_cast<int>(transfer);
+  }
+}
+
 TEST(ColorProfile, IsToldByItsCurve) {
   const std::vector<std::uint8_t> srgb = srgb_profile();
   EXPECT_EQ(color_of_profile(srgb), ColorSpace::kSrgb);
