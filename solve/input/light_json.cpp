@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -189,6 +190,12 @@ Result<ListedLight> light_of_meshroom(const Json& entry, std::size_t k, const fs
   return light;
 }
 
+// A text or a whole number.
+std::string number_of_view(const Json& entry) {
+  const Json& view = member(entry, "viewId");
+  return view.is_number_integer() ? view.dump() : text_in(entry, "viewId");
+}
+
 Result<LightList> read_meshroom(const Json& document, const fs::path& file) {
   LightList list = {.file = file, .kind = "lights of Meshroom"};
   const Json& lights = member(document, "lights");
@@ -197,6 +204,7 @@ Result<LightList> read_meshroom(const Json& document, const fs::path& file) {
     Result<ListedLight> light = light_of_meshroom(entry, k++, file);
     if (!light) return std::move(light).error();
     if (lights.is_object()) light->name = key;
+    if (lights.is_array()) light->view = number_of_view(entry);
     list.have_strengths = list.have_strengths || !member(entry, "intensity").is_null();
     list.lights.push_back(std::move(*light));
   }
@@ -205,6 +213,24 @@ Result<LightList> read_meshroom(const Json& document, const fs::path& file) {
 }
 
 }  // namespace
+
+Result<bool> name_views(std::string_view sfm, const fs::path& file, LightList& list) {
+  const ParsedJson parsed = parse_json(sfm);
+  const Json& views = member(parsed.document, "views");
+  if (!parsed.why.empty() || !views.is_array())
+    return bad_lights(file,
+                      parsed.why.empty() ? "it has no list of views, as a .sfm of Meshroom has" : parsed.why);
+  std::map<std::string, std::string> paths;
+  for (const Json& view : views) paths[number_of_view(view)] = text_in(view, "path");
+  std::vector<std::string> names;
+  for (const ListedLight& light : list.lights) {
+    const auto path = paths.find(light.view);
+    if (light.view.empty() || path == paths.end() || path->second.empty()) return false;
+    names.push_back(path->second);
+  }
+  for (std::size_t k = 0; k < names.size(); ++k) list.lights[k].name = std::move(names[k]);
+  return true;
+}
 
 bool is_light_json(std::string_view text) {
   const Json document = parse_json(text).document;

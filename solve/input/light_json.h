@@ -17,6 +17,11 @@ namespace weft::solve {
 /// and are turned round. Photographs that a project skips are left out. kBadData for anything else.
 Result<LightList> read_light_json(std::string_view text, const std::filesystem::path& file);
 
+/// Gives each light that has a view the photograph of that view, by a file of Meshroom (.sfm: "views" with
+/// viewId and path). False, and nothing is given, where it lacks one of them. kBadData for what is no such
+/// file.
+Result<bool> name_views(std::string_view sfm, const std::filesystem::path& file, LightList& list);
+
 /// Whether a text has members that read_light_json() knows.
 bool is_light_json(std::string_view text);
 

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = std::size_t{32} << 20;
+constexpr std::size_t kMostBytes = std::size_t{8} << 20, kMostOfViews = 4 * kMostBytes;
 /// By which a unit length may be off as written with two digits.
 constexpr double kUnit = 0.02;
 
@@ -93,6 +93,7 @@ Result<LightList> list_of_names(const LightRows& table, const fs::path& file) {
   if (width == 6)
     list.assumed.emplace_back("six numbers a line: the last three are taken as strengths R, G, B");
   for (const LightRow& row : table.rows) {
+    if (row.name.empty()) return bad_lights(file, fmt::format("line {} names no photograph", row.line));
     const std::vector<double>& n = row.numbers;
     list.lights.push_back({.name = row.name, .toward = {n[0], n[1], n[2]}});
     if (width == 3 || counts) continue;
@@ -278,6 +279,46 @@ Result<void> take_companions(LightList& list) {
   return {};
 }
 
+// The files of Meshroom's structure from motion in a folder, as people count.
+std::vector<fs::path> sfm_files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code failed;
+  for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
+    if (small_letters(entry->path().extension().string()) == ".sfm") files.push_back(entry->path());
+  }
+  std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
+    return stands_before(a.filename().string(), b.filename().string());
+  });
+  return files;
+}
+
+// Names by the .sfm beside lights of Meshroom's views. Several that name them otherwise are refused.
+Result<void> take_views(LightList& list) {
+  if (list.lights.front().view.empty() || !list.lights.front().name.empty()) return {};
+  const std::vector<ListedLight> unnamed = list.lights;
+  fs::path named_by;
+  for (const fs::path& file : sfm_files_in(absolute_folder(list.file.parent_path()))) {
+    const Result<std::string> bytes = read_text(file, kMostOfViews);
+    if (!bytes) return bytes.error();
+    LightList other = list;
+    other.lights = unnamed;
+    const Result<bool> has_all = name_views(*bytes, file, other);
+    if (!has_all) return has_all.error();
+    if (!*has_all) continue;
+    const bool is_same =
+        std::ranges::equal(list.lights, other.lights, {}, &ListedLight::name, &ListedLight::name);
+    if (!named_by.empty() && !is_same) {
+      return bad_lights(list.file, fmt::format("{} and {} name the photographs of its views differently",
+                                               named_by.filename().string(), file.filename().string()));
+    }
+    list.lights = std::move(other.lights);
+    named_by = file;
+  }
+  list.assumed.push_back(named_by.empty() ? "no .sfm beside it names the photographs of its views"
+                                          : "views are named by " + named_by.filename().string());
+  return {};
+}
+
 }  // namespace
 
 Result<LightList> parse_light_list(std::string_view bytes, const fs::path& file) {
@@ -305,6 +346,7 @@ Result<LightList> read_light_list(const fs::path& file) {
   Result<LightList> list = parse_light_list(*bytes, file);
   if (!list) return list;
   const std::string ending = small_letters(file.extension().string());
+  if (Result<void> ok = take_views(*list); !ok) return std::move(ok).error();
   const bool stands_alone = ending == ".lp" || ending == ".json" || ending == ".dome" || ending == ".relight";
   if (stands_alone) return list;
   if (Result<void> ok = take_companions(*list); !ok) return std::move(ok).error();

@@ -24,6 +24,7 @@ struct ListedLight {
   Vec3 toward = {};
   /// Reading of a white surface that faces the light, R G B; above 0.
   std::array<double, 3> strength_rgb = {1, 1, 1};
+  std::string view = {};  ///< Meshroom's number of its photograph; empty: there is none
 
   Vec3 direction() const { return normalized(toward); }
 };
@@ -39,8 +40,9 @@ struct LightList {
 };
 
 /// The lights of a file: a table of text, .npy, or JSON of RelightLab or Meshroom; beside light_directions.*
-/// also what filenames.txt and light_intensities.* say. Each kind is known by its bytes. kNoInput; kBadData
-/// for what is none of these, with the line, and for lists of unequal length.
+/// also what filenames.txt and light_intensities.* say, beside Meshroom's the .sfm that names its views. Each
+/// kind is known by its bytes. kNoInput; kBadData for what is none of these, with the line, and for lists of
+/// unequal length.
 Result<LightList> read_light_list(const std::filesystem::path& file);
 
 /// The same of bytes, without what lies beside: `file` is for messages and relative names.

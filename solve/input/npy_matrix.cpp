@@ -78,8 +78,7 @@ Result<std::vector<std::vector<double>>> read_npy_matrix(std::string_view bytes,
     return bad_npy(file, fmt::format("its numbers are {}, and \"<f4\" and \"<f8\" are read",
                                      kind.substr(0, kind.find(','))));
   }
-  if (!value_of(heading, "fortran_order").starts_with("False"))
-    return bad_npy(file, "it is in Fortran's order");
+  const bool by_columns = value_of(heading, "fortran_order").starts_with("True");
   const auto shape = shape_of(value_of(heading, "shape"));
   if (!shape) return bad_npy(file, "it has not two dimensions");
   const auto [rows, columns] = *shape;
@@ -91,9 +90,10 @@ Result<std::vector<std::vector<double>>> read_npy_matrix(std::string_view bytes,
   std::vector<std::vector<double>> matrix(rows, std::vector<double>(columns));
   for (std::size_t i = 0; i < rows * columns; ++i) {
     const double number = is_double ? number_at<double>(numbers, i) : number_at<float>(numbers, i);
+    const std::size_t row = by_columns ? i % rows : i / columns, column = by_columns ? i / rows : i % columns;
     if (!std::isfinite(number))
-      return bad_npy(file, fmt::format("row {} has a number that is not finite", i / columns + 1));
-    matrix[i / columns][i % columns] = number;
+      return bad_npy(file, fmt::format("row {} has a number that is not finite", row + 1));
+    matrix[row][column] = number;
   }
   return matrix;
 }

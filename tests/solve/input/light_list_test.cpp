@@ -14,6 +14,7 @@
 
 #include "core/base/files.h"
 #include "core/base/temporary_folder.h"
+#include "solve/input/light_json.h"
 
 namespace weft::solve {
 namespace {
@@ -178,13 +179,14 @@ TEST(LightList, ReadsArraysOfNumPyAndNamesThoseItDoesNot) {
   const std::string head = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }";
   const std::vector<double> numbers = {0, 0, 1, 0.6, 0, 0.8};
   EXPECT_EQ(said(parsed(npy(head, numbers), "l.npy")), " 0 0 1;  0.6 0 0.8");
+  EXPECT_EQ(said(parsed(npy(with(head, "False", "True"), {0, 0.6, 0, 0, 1, 0.8}), "l.npy")),
+            " 0 0 1;  0.6 0 0.8");
   struct Case {
     std::string heading;
     const char* why;
   };
   for (const Case& each : std::vector<Case>{{with(head, "<f8", ">f8"), "'>f8'"},
                                             {with(head, "<f8", "<i8"), "'<i8'"},
-                                            {with(head, "False", "True"), "Fortran"},
                                             {with(head, "(2, 3)", "(6,)"), "two dimensions"},
                                             {with(head, "(2, 3)", "(3, 3)"), "72 bytes, and 48 follow"}})
     EXPECT_THAT(said(parsed(npy(each.heading, numbers), "l.npy")), HasSubstr(each.why));
@@ -237,6 +239,21 @@ TEST(LightList, ReadsMeshroomAndTurnsItsAxes) {
               HasSubstr("img_1 0 -0 1"));
   EXPECT_THAT(said(parsed(R"({"lights": [{"direction": [1,2,3,4,5,6,7,8,9]}]})", "l.json")),
               HasSubstr("harmonics"));
+}
+
+TEST(LightList, NamesTheViewsOfMeshroomByItsSfm) {
+  LightList list = {.lights = {{.view = "13"}, {.view = "12"}}};
+  const auto named = [&](const char* sfm) {
+    const Result<bool> has_all = name_views(sfm, "a.sfm", list);
+    return has_all ? std::string(*has_all ? "all" : "lacks one") : has_all.error().message();
+  };
+  EXPECT_EQ(named(R"({"views": [{"viewId": "12", "path": "/x/a.png"}]})"), "lacks one");
+  EXPECT_EQ(list.lights[1].name, "") << "nothing is given where one lacks";
+  EXPECT_THAT(named(R"({"cameras": []})"), HasSubstr("no list of views"));
+  EXPECT_THAT(named(R"({"views": [)"), HasSubstr("a.sfm"));
+  EXPECT_EQ(named(R"({"views": [{"viewId": 12, "path": "/x/a.png"}, {"viewId": "13", "path": "/x/b.png"}]})"),
+            "all");
+  EXPECT_EQ(list.lights[0].name + " " + list.lights[1].name, "/x/b.png /x/a.png");
 }
 
 TEST(LightList, RefusesByName) {
