@@ -29,6 +29,7 @@ constexpr int kBlock = 4;                // pixels: whole cells of a colour filt
 constexpr double kTells = 1.5;           // times as well predicted
 constexpr double kIsSure = 2;            // so that it is mended
 constexpr double kLeastConstant = 0.03;  // of a reading
+constexpr double kMostConstant = 0.95;   // beyond, no light of a room explains it
 constexpr double kLessCurl = 0.8;        // of the curl as given
 
 // --- readings
@@ -112,6 +113,14 @@ std::optional<Suspicion> suspect_constant(const std::vector<BlockTile>& tiles, d
   const double factor = error / solver::left_out_error(tiles, true);
   const double share = solver::constant_share(tiles);
   if (!(factor > kTells) || !(share > kLeastConstant)) return std::nullopt;
+  if (share > kMostConstant) {
+    return Suspicion{
+        factor,
+        {"LIGHTS_DO_NOT_FIT",
+         "The photographs contradict the directions of their lights, and no light that is in all "
+         "of them explains it",
+         "check the order of photographs and lights, and each light's height over the table"}};
+  }
   return Suspicion{
       factor,
       {"LIGHT_IN_ALL",
@@ -192,6 +201,7 @@ void convert(Developed& developed, Transfer taken, int threads) {
         });
       }
     }
+    developed.page_out(k);
   });
 }
 

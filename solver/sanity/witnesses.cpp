@@ -12,7 +12,7 @@ namespace weft::solver {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kFewestBlocks = 100;
+constexpr std::size_t kFewestBlocks = 50;
 constexpr double kMostWork = 4e8;        // multiplications of one witness
 constexpr double kWorstCondition = 1e4;  // of the lights' normal equations
 constexpr double kSteepest = 0.3;        // nz: beyond it slopes are mostly noise
