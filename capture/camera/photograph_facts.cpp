@@ -12,6 +12,7 @@
 #include <cstring>
 #include <limits>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -295,6 +296,11 @@ PhotographFacts photograph_facts(const ReadAt& read_at) {
 }
 
 Result<PhotographFacts> read_photograph_facts(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_other(file, ignored) || std::filesystem::is_fifo(file, ignored)) {
+    return Error{ErrorKind::kBadData, "not a picture", file.string(), "it is a pipe, a socket or a device",
+                 "give a file, or take it out of the folder"};
+  }
   const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return cannot_read(file, errno);
   PhotographFacts facts = photograph_facts([fd](std::uint64_t offset, std::span<std::uint8_t> bytes) {

@@ -291,6 +291,21 @@ TEST_F(PhotographHeaders, LookSaysWhatAFileMeans) {
   EXPECT_FALSE(map.json()["pictures"][0]["unfit"].is_null());
 }
 
+TEST_F(PhotographHeaders, LookHasALineForEachPictureOfAFolder) {
+  put_bytes(folder_ / "half.png", "\x89PNG");
+  put_bytes(folder_ / "notes.txt", "no picture");
+  const Outcome run = run_weft({"look", folder_.string()});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_NE(run.output.find("01.png         40 x 30, 16 bits of R, G, B; linear"), std::string::npos)
+      << run.output;
+  EXPECT_NE(run.output.find("half.png       cannot be read: "), std::string::npos) << run.output;
+  EXPECT_EQ(run.output.find("notes"), std::string::npos) << run.output;
+  const Json pictures = run_weft({"look", folder_.string(), "--json"}).json()["pictures"];
+  EXPECT_EQ(std::ranges::count(run.output, '\n'), static_cast<std::ptrdiff_t>(pictures.size()));
+  fs::create_directories(work_ / "none");
+  expect_refusal(work_, {"look", (work_ / "none").string()}, 66, {"there are no pictures"});
+}
+
 // Waves under six lamps 120 to 160 mm from the middle of 160 x 120 mm, and a list of their places.
 struct NearSample {
   static constexpr double kMmPerPixel = 1;
