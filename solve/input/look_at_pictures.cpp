@@ -148,6 +148,9 @@ std::string kinds_in_words(const Pictures& pictures, Transfer wanted) {
 
 void say_what_is_assumed(const Pictures& pictures, const PhotoOptions& options, SolvePlan& plan) {
   plan.assumed.push_back(kinds_in_words(pictures, options.reading.transfer));
+  const std::vector<std::string>& channels = pictures.front().channels;
+  if (!plan.raw && channels.size() == 1 && channels.front() != "Y")
+    plan.assumed.push_back(fmt::format("channel {} is taken as grey", channels.front()));
   const int orientation = pictures.front().orientation;
   if (plan.orientation != 1) {
     plan.assumed.push_back(fmt::format("orientation {}: {} as they are shown, and lights are taken so",
