@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -14,8 +12,8 @@
 #include "core/image_io/image_io.h"
 #include "core/rig/session.h"
 #include "simulator/scene/scene_rig.h"
-#include "simulator/simulate.h"
 #include "tests/system/program.h"
+#include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 
 namespace weft::test {
@@ -23,45 +21,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Size kFrame = {320, 240};
-constexpr double kPixel_mm = 0.5, kDistance_mm = 600;
+constexpr double kWidth_mm = 160, kPixel_mm = 0.5, kDistance_mm = 600;
 
 class LightsByBall : public testing::Test {
  protected:
-  // A twill with or without a chrome ball, as float files shot02.exr to shot11.exr.
+  // As float files shot02.exr to shot11.exr.
   simulator::Scene photograph(const fs::path& folder, bool with_ball) const {
-    simulator::Scene scene;
-    scene.camera.width = kFrame.width;
-    scene.camera.height = kFrame.height;
-    scene.camera.mm_per_pixel = kPixel_mm;
-    scene.camera.distance_mm = kDistance_mm;
-    scene.geometry.kind = simulator::GeometryKind::kTwill;
-    scene.geometry.warp_pitch_mm = scene.geometry.weft_pitch_mm = 3;
-    if (with_ball) {
-      simulator::BallSettings& ball = scene.balls.emplace_back();
-      ball.centre_mm = {20, -12, 33};
-      ball.radius_mm = 28;
-      ball.highlight_deg = 2;
-    }
-    write_shots(scene, folder);
+    simulator::Scene scene = twill_with_ball(kDistance_mm);
+    if (!with_ball) scene.balls.clear();
+    write_photographs(scene, folder, SampleType::kFloat);
     return scene;
-  }
-  static void write_shots(const simulator::Scene& scene, const fs::path& folder) {
-    const Size size = {scene.camera.width, scene.camera.height};
-    const auto rendering = simulator::render_readings(scene, {0, 0, size.width, size.height});
-    EXPECT_TRUE(rendering) << rendering.error().message();
-    fs::create_directories(folder);
-    for (int k = 0; k < rendering->readings.planes() / 3; ++k) {
-      Image<float> shot(size, 3);
-      for (int c = 0; c < 3; ++c) {
-        for (int y = 0; y < size.height; ++y) {
-          for (int x = 0; x < size.width; ++x)
-            shot(x, y, c) = static_cast<float>(std::min(1.0, 0.02 * rendering->readings(x, y, 3 * k + 1)));
-        }
-      }
-      const std::array<View<const float>, 3> planes = {shot.plane(0), shot.plane(1), shot.plane(2)};
-      EXPECT_TRUE(write_image(folder / fmt::format("shot{:02}.exr", k + 2), planes, {"R", "G", "B"}, {}));
-    }
   }
   static void expect_true(const Json& told, const simulator::Scene& scene) {
     const auto truth =
@@ -73,8 +42,7 @@ class LightsByBall : public testing::Test {
     }
   }
   std::vector<std::string> lights(std::vector<std::string> more) const {
-    const std::string fov =
-        fmt::format("{}", degrees(2 * std::atan(kFrame.width * kPixel_mm / 2 / kDistance_mm)));
+    const std::string fov = fmt::format("{}", degrees(2 * std::atan(kWidth_mm / 2 / kDistance_mm)));
     std::vector<std::string> words = {"lights", (work_ / "cloth").string(), "--fov", fov};
     words.insert(words.end(), more.begin(), more.end());
     return words;
@@ -172,7 +140,7 @@ TEST_F(LightsByBall, TwoOfAKnownSizePutTheirLampsIntoTheLightFile) {
     ball.radius_mm = kRadius_mm;
     ball.highlight_deg = 3;
   }
-  write_shots(scene, work_ / "cloth");
+  write_photographs(scene, work_ / "cloth", SampleType::kFloat);
   const std::string fov = fmt::format("{}", degrees(2 * std::atan(640 * kPixel_mm / 2 / kDistance_mm)));
   const Outcome told =
       run_weft({"lights", (work_ / "cloth").string(), "--ball", "--ball-mm", "68", "--fov", fov});

@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <map>
@@ -17,7 +16,6 @@
 #include <vector>
 
 #include "core/base/json_document.h"
-#include "core/image_io/image_io.h"
 #include "tests/core/places.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
@@ -129,20 +127,7 @@ class PageCommands : public testing::Test {
 };
 
 TEST_F(PageCommands, OfTheReadmeRunInAFolderOfWhatTheyName) {
-  PhotographSample sample;
-  sample.write(work_ / "DIR");
-  std::ofstream lights(work_ / "lights.lp");
-  lights << sample.lights.size() << '\n';
-  for (std::size_t k = 0; k < sample.lights.size(); ++k) {
-    const Vec3& to = sample.lights[k].direction;
-    lights << "DIR/" << sample.name_of(k) << ' ' << to.x << ' ' << to.y << ' ' << to.z << '\n';
-  }
-  lights.close();
-  fs::copy(work_ / "DIR" / "normal_gt.exr", work_ / "truth.exr");
-  Image<float> mask(sample.size, 1);
-  for (int y = 0; y < sample.size.height; ++y) std::fill_n(&mask(0, y), sample.size.width, 1.0F);
-  const View<const float> planes[] = {mask.plane(0)};
-  ASSERT_TRUE(write_image(work_ / "DIR" / "mask.png", planes, {"Y"}, {.type = SampleType::kUint8}));
+  write_photographs(twill_with_ball(4000), work_ / "DIR", SampleType::kUint8, work_ / "truth.exr");
   simulate(scene_named("twill", {256, 192}), work_ / "NAME.weft");
   fs::create_directories(work_ / "archive");
   simulate(scene_named("twill", {48, 32}), work_ / "archive" / "wool.weft");
@@ -168,6 +153,15 @@ TEST_F(PageCommands, OfTheReadmeRunInAFolderOfWhatTheyName) {
     EXPECT_EQ(ran[i].exit_code, commands[i].starts_with("weft doctor") ? kNoBoard : 0)
         << "$ " << commands[i] << '\n'
         << ran[i].said;
+  // What "Your own photographs" made of a folder with a ball and without a light file.
+  const auto glb = std::ranges::find_if(
+      commands, [](const auto& c) { return c.find("DIR-solve/* --preset glb") != c.npos; });
+  ASSERT_NE(glb, commands.end());
+  const Ran named = run({"ls DIR-solve/*/export/glb/*.glb"}).front();
+  EXPECT_EQ(named.exit_code, 0) << named.said;
+  const Ran compared =
+      run({"weft compare DIR-solve/*/normal.exr truth.exr --mask DIR/mask.png --json -q"}).front();
+  EXPECT_LT(Json::parse(compared.said, nullptr, false).value("mean_deg", 180.0), 3) << compared.said;
 }
 
 TEST_F(PageCommands, OfTheServerAreAnsweredByOneOfARelativeRigFile) {

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "core/base/sha256.h"
+#include "core/image/color_spaces.h"
 #include "core/rig/session.h"
 #include "simulator/simulate.h"
 #include "tests/core/places.h"
@@ -93,6 +94,42 @@ void simulate_developed(const simulator::Scene& scene, const fs::path& folder, c
     });
   }
   need(write_session(session));
+}
+
+simulator::Scene twill_with_ball(double distance_mm) {
+  simulator::Scene scene;
+  scene.camera.width = 320;
+  scene.camera.height = 240;
+  scene.camera.mm_per_pixel = 0.5;
+  scene.camera.distance_mm = distance_mm;
+  scene.geometry.kind = simulator::GeometryKind::kTwill;
+  scene.geometry.warp_pitch_mm = scene.geometry.weft_pitch_mm = 3;
+  simulator::BallSettings& ball = scene.balls.emplace_back();
+  ball.centre_mm = {20, -12, 33};
+  ball.radius_mm = 28;
+  ball.highlight_deg = 2;
+  return scene;
+}
+
+void write_photographs(const simulator::Scene& scene, const fs::path& folder, SampleType type,
+                       const fs::path& truth) {
+  const Size size = {scene.camera.width, scene.camera.height};
+  const simulator::Rendering rendering =
+      need(simulator::render_readings(scene, {0, 0, size.width, size.height}));
+  fs::create_directories(folder);
+  for (int k = 0; k < rendering.readings.planes() / 3; ++k) {
+    const std::string name = fmt::format("shot{:02}.{}", k + 2, type == SampleType::kUint8 ? "png" : "exr");
+    write_planes(folder / name, size, {"R", "G", "B"}, type, [&](int x, int y) {
+      const double grey = std::min(1.0, 0.02 * rendering.readings(x, y, 3 * k + 1));
+      const std::array<double, 3> linear = {grey, grey, grey};
+      return type == SampleType::kUint8 ? srgb_of_rec709(linear) : linear;
+    });
+  }
+  if (truth.empty()) return;
+  write_planes(truth, size, {"X", "Y", "Z"}, SampleType::kFloat, [&](int x, int y) {
+    return std::array<double, 3>{rendering.normal(x, y, 0), rendering.normal(x, y, 1),
+                                 rendering.normal(x, y, 2)};
+  });
 }
 
 std::vector<DistantLight> PhotographSample::six_lights() {

@@ -29,6 +29,14 @@ void simulate(const simulator::Scene& scene, const std::filesystem::path& folder
 void simulate_developed(const simulator::Scene& scene, const std::filesystem::path& folder,
                         const std::string& ending, SampleType type);
 
+/// A twill on which a chrome ball lies, seen from so far; 160 x 120 mm.
+simulator::Scene twill_with_ball(double distance_mm);
+
+/// Photographs of a scene as somebody develops them, without a light file: shot02.exr and on as floats, or
+/// shot02.png and on of 8 bits. The file `truth` gets the true normals (X, Y, Z).
+void write_photographs(const simulator::Scene& scene, const std::filesystem::path& folder, SampleType type,
+                       const std::filesystem::path& truth = {});
+
 /// Photographs of waves of cloth, tilted up to 22 degrees, under distant lights.
 struct PhotographSample {
   Size size = {40, 30};
