@@ -23,6 +23,20 @@ double light_of_srgb(double v) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
+/// The same of a file whose values are few, each worked out once.
+class LightOfCounts {
+ public:
+  LightOfCounts() { light_.fill(-1); }
+  double operator()(float v) {
+    double& light = light_[static_cast<std::size_t>(std::lround(255 * v))];
+    if (light < 0) light = light_of_srgb(static_cast<double>(v));
+    return light;
+  }
+
+ private:
+  std::array<double, 256> light_;
+};
+
 bool is_integer(SampleType type) {
   return type == SampleType::kUint8 || type == SampleType::kUint16;
 }
@@ -177,6 +191,8 @@ Result<Image<float>> read_linear_image(const std::filesystem::path& file, Transf
   const Result<LightChannels> channels = light_channels(*info, file.string());
   if (!channels) return channels.error();
   const bool saturates = clipped == Clipped::kMark && is_integer(info->type);
+  const bool has_few = info->type == SampleType::kUint8;
+  LightOfCounts light_of_count;
   Image<float> rgb(info->size, 3);
   for (int c = 0; c < 3; ++c) {
     const View<const float> from =
@@ -185,7 +201,9 @@ Result<Image<float>> read_linear_image(const std::filesystem::path& file, Transf
       const float* in = from.row(y);
       float* out = rgb.plane(c).row(y);
       for (int x = 0; x < rgb.width(); ++x) {
-        const double light = transfer == Transfer::kSrgb ? light_of_srgb(in[x]) : in[x];
+        const double light = transfer == Transfer::kLinear ? in[x]
+                             : has_few                     ? light_of_count(in[x])
+                                                           : light_of_srgb(in[x]);
         const bool full = saturates && in[x] >= static_cast<float>(kSaturatedFrom);
         out[x] = full ? std::numeric_limits<float>::infinity() : static_cast<float>(light);
       }
