@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "capture/camera/photograph_facts.h"
 #include "core/base/files.h"
 #include "core/base/text.h"
 #include "core/image_io/linear_image.h"
@@ -284,15 +285,23 @@ std::string pattern_of(const fs::path& file) {
   return pattern;
 }
 
-// The photographs of a folder, as people count: of several kinds of names that which has `count`.
+bool is_raw(const fs::path& file) {
+  const std::string ending = small_letters(file.extension().string());
+  return !ending.empty() && capture::is_raw_ending(ending.substr(1));
+}
+
+// The photographs of a folder, as people count: of several kinds of names that which has `count`. Raws where
+// nothing is developed.
 Result<std::vector<fs::path>> photographs_of(const fs::path& folder, std::size_t count,
                                              const fs::path& lights) {
   Folders folders;
-  std::vector<fs::path> all;
+  std::vector<fs::path> all, raws;
   for (const fs::path& file : folders.files_of(folder)) {
-    const bool is_hidden = file.filename().string().starts_with('.');
-    if (is_linear_image(file) && !is_hidden && !is_mask_name(file)) all.push_back(file);
+    if (file.filename().string().starts_with('.')) continue;
+    if (is_raw(file)) raws.push_back(file);
+    if (is_linear_image(file) && !is_mask_name(file)) all.push_back(file);
   }
+  if (all.empty()) all = std::move(raws);
   std::ranges::sort(all, [](const fs::path& a, const fs::path& b) {
     return stands_before(a.filename().string(), b.filename().string());
   });

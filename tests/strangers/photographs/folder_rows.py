@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Folders: sizes that differ, links, permissions, names, what else lies there; raws of the repository's own writers."""
+"""Folders: sizes that differ, links, permissions, names, what else lies there."""
 import os
 import shutil
 import numpy as np
@@ -48,17 +48,6 @@ def other(size):
     height, width = size
     return pictures('.png', lambda p, i, k: png(p, u16(np.resize(i, (height, width, 3)))), only=[6])
 
-
-RAW_SCENE = '''fabric = "felt"
-[camera]
-width = 64
-height = 48
-mm_per_pixel = 0.4
-[geometry]
-kind = "waves"
-[effects]
-noise = true
-'''
 
 ROWS = [
     Row('one a row shorter', refused(65, '07.png', '48 x 39'), other((39, 48))),

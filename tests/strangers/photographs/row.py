@@ -31,6 +31,7 @@ class Row:
     make: Callable  # of the folder
     run: tuple = SOLVE
     before: tuple = field(default=())  # commands that must go well
+    after: Callable = None  # of the folder, behind them
     as_nobody: bool = False  # without the rights of root
     is_written: bool = False  # somebody writes into the folder meanwhile
 
@@ -50,7 +51,7 @@ def right(degrees, *words, truth=None, inside=None, out='out'):
         if missing:
             return f'not a word of {missing}'
         found = read_normals(next(Path(seen.folder).glob(f'{out}/normal.exr')))
-        expected = scene.normals() if truth is None else truth
+        expected = scene.normals() if truth is None else truth(seen.folder) if callable(truth) else truth
         if found.shape != expected.shape:
             return f'normals of {found.shape[1]} x {found.shape[0]}'
         off = scene.mean_degrees(found, expected, inside)
@@ -121,6 +122,8 @@ def tried(row, program, folder):
         seen = run_weft(program, arguments, folder)
         if seen.code != 0:
             return f'{" ".join(arguments)}: exit code {seen.code}: {first_line(seen.text)}'
+    if row.after:
+        row.after(folder)
     earlier = listing(folder)
     seen = run_weft(program, row.run, folder, row.as_nobody)
     if seen.code not in (0, 64, 65, 66):

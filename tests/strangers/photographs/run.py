@@ -13,7 +13,7 @@ sys.dont_write_bytecode = True
 from row import tried  # noqa: E402
 
 TABLES = ('png_rows', 'tiff_rows', 'exr_rows', 'jpeg_rows', 'light_rows', 'layout_rows', 'lamp_rows', 'folder_rows',
-          'rubbish_rows')
+          'raw_rows', 'rubbish_rows')
 
 
 def rows_of(only):
