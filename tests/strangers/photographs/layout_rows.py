@@ -67,7 +67,7 @@ def meshroom(order=range(COUNT), view=lambda k: str(900 + k)):
                                    'direction': [f'{v:.7f}' for v in MESHROOM[k]]} for k in order]})
 
 
-def sfm(path=lambda name: f'/home/anna/photos/{name}', count=COUNT, listed=NAMES):
+def sfm(path=lambda name: f'/anna/photos/{name}', count=COUNT, listed=NAMES):
     return json.dumps({'version': ['1', '2', '6'], 'views': [
         {'viewId': str(900 + k), 'path': path(n), 'width': str(WIDTH), 'height': str(HEIGHT)}
         for k, n in enumerate(listed[:count])]})

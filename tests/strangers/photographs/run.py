@@ -48,6 +48,7 @@ def main():
         return 0
     root = a.output or tempfile.mkdtemp(prefix='weft-photographs-')
     Path(root).mkdir(parents=True, exist_ok=True)
+    Path(root).chmod(0o755)  # for rows that run as nobody
     program, wrong = str(Path(a.program).resolve()), 0
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         for name, row, fault in pool.map(lambda each: judged(*each, program, root), rows):
