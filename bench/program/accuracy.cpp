@@ -15,6 +15,7 @@
 #include "bench/accuracy/coverage.h"
 #include "bench/accuracy/photos.h"
 #include "bench/program/studies.h"
+#include "bench/sanity/sanity.h"
 
 namespace weft::bench {
 namespace {
@@ -145,6 +146,19 @@ app::Run add_photos(app::Options& options) {
                                    }}}));
 }
 
+app::Run add_sanity(app::Options& options) {
+  const auto a = std::make_shared<SanityOptions>();
+  const Choice choice = by_flag(
+      options, {{"sanity", "", [a](const StudyOptions& o) { return sanity_table(*a, o); }, {.runs = 100}}});
+  std::vector<std::string> names;
+  for (const SetFault& fault : set_faults()) names.emplace_back(fault.name);
+  options.add("--fault", &a->fault, "One fault alone, such as \"y mirrored\"").one_of(names);
+  options.add("--sets", &choice->options.runs, "Sets of photographs a fault; 0 is 100").in_range(0, 10000);
+  options.add("--seed", &choice->options.seed, "Of the first set").shows_default();
+  options.add_flag("--list", &a->lists, "What is said of each set");
+  return run_of(choice);
+}
+
 }  // namespace
 
 app::Verb accuracy_verb() {
@@ -153,6 +167,11 @@ app::Verb accuracy_verb() {
 
 app::Verb explain_verb() {
   return {"explain", "Errors and seconds that solve --explain foretells against true ones", add_explain};
+}
+
+app::Verb sanity_verb() {
+  return {"sanity", "What is said of photographs whose lights or values are not what they are taken for",
+          add_sanity};
 }
 
 app::Verb photos_verb() {

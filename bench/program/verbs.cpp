@@ -246,6 +246,7 @@ std::vector<app::Verb> verbs() {
           accuracy_verb(),
           explain_verb(),
           photos_verb(),
+          sanity_verb(),
           {"height", "Error, time and memory from normals to heights", add_height},
           {"registration",
            "Shots registered to each other: what a moved one costs and gets back, and what gloss feigns",
