@@ -153,7 +153,7 @@ void sort_as_text(DrawnSet& set, Draws&) {
 DrawnSet draw_set(std::uint32_t seed) {
   Draws draws(seed);
   DrawnSet set;
-  const Size size = {64 + draws.below(97), 64 + draws.below(65)};
+  const Size size = {64 + draws.below(65), 64 + draws.below(33)};
   set.cloth = draw_cloth(size, draws);
   set.told = draw_directions(draws);
   set.tells_strengths = draws.with(0.5);
@@ -295,7 +295,7 @@ Result<solve::PhotoOptions> write_set(const DrawnSet& set, const fs::path& folde
   solve::PhotoOptions options;
   options.folder = folder;
   options.light_file = folder / "cloth.lp";
-  options.transfer = set.said;
+  options.reading.transfer = set.said;
   const char* ending = ending_of(set.kind);
   std::string lights = fmt::format("{}\n", set.told.size());
   for (std::size_t k = 0; k < set.told.size(); ++k) {

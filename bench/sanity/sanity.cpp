@@ -81,8 +81,8 @@ Result<SetOutcome> outcome_of(const SetFault& fault, std::uint32_t seed) {
   if (!input) return input.error();
   JobContext context;
   context.threads = 1;
-  const Result<solve::SolveReport> report =
-      solve::solve_photos(*input, {.output = folder.path() / "solve", .previews = false}, context);
+  const Result<solve::SolveReport> report = solve::solve_photos(
+      *input, {.method = "fast", .output = folder.path() / "solve", .previews = false}, context);
   if (report) return judge(fault, report->facts);
   const std::string said = report.error().message();
   return SetOutcome{has_any(said, fault.words) ? Told::kNamed : Told::kOtherwise, said};

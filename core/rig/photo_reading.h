@@ -18,9 +18,9 @@ enum class PictureOrientation { kShown, kStored };
 inline constexpr std::array<const char*, 2> kPictureOrientationNames = {"shown", "stored"};
 
 /// What is done to directions of lights that mean other axes than x right, y up, z to the camera.
-enum class LightFlip { kNone, kX, kY, kZ, kAll, kLeft, kRight, kExchange, kAgainst };
-inline constexpr std::array<const char*, 9> kLightFlipNames = {"none", "x",     "y",        "z",      "all",
-                                                               "left", "right", "exchange", "against"};
+enum class LightFlip { kNone, kX, kY, kZ, kAll, kLeft, kRight, kExchange, kAgainst, kHalf };
+inline constexpr std::array<const char*, 10> kLightFlipNames = {
+    "none", "x", "y", "z", "all", "left", "right", "exchange", "against", "half"};
 
 inline const char* name_of(LightFlip flip) {
   return kLightFlipNames[static_cast<std::size_t>(flip)];

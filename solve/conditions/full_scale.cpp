@@ -16,12 +16,12 @@
 namespace weft::solve {
 namespace {
 
-constexpr std::int64_t kFewestFull = 100;     // samples of all photographs
-constexpr std::int64_t kFewestInOne = 20;     // of a photograph, for it to count
-constexpr double kMostOfOne = 0.5;            // of a photograph's samples: more is a surface of one value
-constexpr double kNear = 0.98, kBelow = 0.8;  // of the largest value
-constexpr int kPile = 3;                      // times as many as come near, or as any value below has
-constexpr std::size_t kBins = 4096;           // from kBelow to the largest value
+constexpr std::int64_t kFewestFull = 100;  // samples of all photographs
+constexpr std::int64_t kFewestInOne = 20;  // of a photograph, for it to count
+constexpr double kMostOfOne = 0.5;         // of a photograph's samples: more is a surface of one value
+constexpr double kBelow = 0.8;             // of the largest value
+constexpr int kPile = 3;                   // times as many as any value below has
+constexpr std::size_t kBins = 4096;        // from kBelow to the largest value
 
 float largest_in(View<const float> plane) {
   float largest = 0;
@@ -36,7 +36,7 @@ float largest_in(View<const float> plane) {
 
 // How often a plane has the largest value, and those below.
 struct Top {
-  std::int64_t full = 0, near = 0;
+  std::int64_t full = 0;
   std::vector<std::int64_t> below = std::vector<std::int64_t>(kBins);
 };
 
@@ -53,7 +53,6 @@ Top top_of(View<const float> plane, float largest) {
         ++top.full;
         continue;
       }
-      top.near += value >= kNear * static_cast<double>(largest);
       ++top.below[std::min(kBins - 1, static_cast<std::size_t>((value - from) * scale))];
     }
   }
@@ -61,18 +60,16 @@ Top top_of(View<const float> plane, float largest) {
 }
 
 bool is_a_pile(const std::vector<Top>& tops, std::int64_t pixels) {
-  std::int64_t full = 0, near = 0;
+  std::int64_t full = 0;
   int photographs = 0;
   std::vector<std::int64_t> below(kBins);
   for (const Top& top : tops) {
     if (static_cast<double>(top.full) > kMostOfOne * static_cast<double>(pixels)) return false;
     full += top.full;
-    near += top.near;
     photographs += top.full >= kFewestInOne;
     std::ranges::transform(top.below, below, below.begin(), std::plus());
   }
-  return full >= kFewestFull && photographs > 1 && full > kPile * near &&
-         full > kPile * std::ranges::max(below);
+  return full >= kFewestFull && photographs > 1 && full > kPile * std::ranges::max(below);
 }
 
 void mark(View<float> plane, float largest) {

@@ -7,8 +7,8 @@
 namespace weft::solve {
 
 /// Finds where photographs that somebody developed stop below the full scale of their files, as counts of 12
-/// bits in files of 16 do: where many samples of several photographs have the very largest value of all and
-/// hardly any come near it. Those are marked as saturated, and it is said.
+/// bits in files of 16 do: where many more samples of several photographs have the very largest value of all
+/// than any value below it. Those are marked as saturated, and it is said.
 Result<void> find_full_scale(const Exposures& exposures);
 
 }  // namespace weft::solve

@@ -32,6 +32,8 @@ Vec3 flipped(LightFlip flip, const Vec3& v) {
       return {v.y, v.x, v.z};
     case LightFlip::kAgainst:
       return {-v.y, -v.x, v.z};
+    case LightFlip::kHalf:
+      return {-v.x, -v.y, v.z};
   }
   return v;
 }

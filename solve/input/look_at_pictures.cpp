@@ -13,6 +13,7 @@
 #include "capture/frames/picture_meaning.h"
 #include "core/base/files.h"
 #include "core/rig/exposure_words.h"
+#include "solve/input/photo_mask.h"
 
 namespace weft::solve {
 namespace {
@@ -131,6 +132,32 @@ Result<void> look_at_dark(const fs::path& dark, const PictureMeaning& first, boo
   return {};
 }
 
+// Such a photograph in the folder that nobody named: used if it is the only one and fits.
+void look_for_dark(const PhotoOptions& options, const Pictures& pictures, SolvePlan& plan) {
+  if (!options.dark.empty() || options.reading.ambient != 0 || plan.raw) return;
+  const fs::path& first = pictures.front().file;
+  const fs::path folder = options.folder.empty() ? first.parent_path() : options.folder;
+  std::vector<fs::path> found = find_dark(folder);
+  std::erase_if(found, [&](const fs::path& file) {
+    std::error_code ignored;
+    return std::ranges::any_of(
+        pictures, [&](const PictureMeaning& p) { return fs::equivalent(p.file, file, ignored); });
+  });
+  if (found.empty()) return;
+  const std::string name = found.front().filename().string();
+  std::string why = "there are several";
+  if (found.size() == 1) {
+    const Result<void> ok = look_at_dark(found.front(), pictures.front(),
+                                         options.reading.orientation == PictureOrientation::kShown, plan);
+    if (ok) {
+      plan.assumed.push_back("dark photograph: " + name + " lies beside them, and is taken from each");
+      return;
+    }
+    why = ok.error().what + ", " + ok.error().why;
+  }
+  plan.assumed.push_back("the dark photograph " + name + " is not used: " + why);
+}
+
 // "10 photographs of 96 x 72, sRGB: ..."; files of several kinds are counted by kind.
 std::string kinds_in_words(const Pictures& pictures, Transfer wanted) {
   std::map<std::string, int> kinds;
@@ -190,6 +217,7 @@ Result<void> look_at_pictures(const PhotoOptions& options, SolvePlan& plan) {
                             });
   even_out_exposures(*pictures, plan);
   if (Result<void> ok = look_at_dark(options.dark, first, as_shown, plan); !ok) return ok;
+  look_for_dark(options, *pictures, plan);
   const std::vector<DistantLight>& lights = std::get<DistantLights>(*plan.calibration.lights).lights;
   std::map<std::string, fs::path> seen;
   for (std::size_t k = 0; k < plan.lit.size(); ++k) {

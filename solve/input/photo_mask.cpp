@@ -58,22 +58,41 @@ bool is_count_of_one(float most, SampleType type) {
   return std::lround(full * most) == 1;
 }
 
-}  // namespace
-
-bool is_mask_name(const fs::path& file) {
+// Whether a picture's name is the word, or ends with it behind a mark.
+bool is_named(const fs::path& file, std::string_view word) {
   const std::string stem = small_letters(file.stem().string());
-  if (!is_linear_image(file) || !stem.ends_with("mask")) return false;
-  return stem == "mask" || std::string_view("._-").find(stem[stem.size() - 5]) != std::string_view::npos;
+  if (!is_linear_image(file) || !stem.ends_with(word)) return false;
+  return stem == word ||
+         std::string_view("._-").find(stem[stem.size() - word.size() - 1]) != std::string_view::npos;
 }
 
-Result<fs::path> find_mask(const fs::path& folder) {
+std::vector<fs::path> found_in(const fs::path& folder, bool (*is_one)(const fs::path&)) {
   std::vector<fs::path> found;
   std::error_code failed;
   for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
-    if (is_mask_name(entry->path())) found.push_back(entry->path());
+    if (is_one(entry->path())) found.push_back(entry->path());
   }
-  if (found.empty()) return fs::path();
   std::ranges::sort(found);
+  return found;
+}
+
+}  // namespace
+
+bool is_mask_name(const fs::path& file) {
+  return is_named(file, "mask");
+}
+
+bool is_dark_name(const fs::path& file) {
+  return is_named(file, "dark") || is_named(file, "ambient");
+}
+
+std::vector<fs::path> find_dark(const fs::path& folder) {
+  return found_in(folder, is_dark_name);
+}
+
+Result<fs::path> find_mask(const fs::path& folder) {
+  const std::vector<fs::path> found = found_in(folder, is_mask_name);
+  if (found.empty()) return fs::path();
   if (found.size() == 1) return found.front();
   return Error{ErrorKind::kBadData, "there are several masks", folder.string(),
                fmt::format("{} and {}", found[0].filename().string(), found[1].filename().string()),

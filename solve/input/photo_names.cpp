@@ -299,7 +299,7 @@ Result<std::vector<fs::path>> photographs_of(const fs::path& folder, std::size_t
   for (const fs::path& file : folders.files_of(folder)) {
     if (file.filename().string().starts_with('.')) continue;
     if (is_raw(file)) raws.push_back(file);
-    if (is_linear_image(file) && !is_mask_name(file)) all.push_back(file);
+    if (is_linear_image(file) && !is_mask_name(file) && !is_dark_name(file)) all.push_back(file);
   }
   if (all.empty()) all = std::move(raws);
   std::ranges::sort(all, [](const fs::path& a, const fs::path& b) {

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "capture/frames/session_frames.h"
@@ -120,6 +122,19 @@ void choose_more(SolvePlan& plan) {
   }
 }
 
+// Two LEDs do not make one photograph.
+void tell_of_copies(SolvePlan& plan) {
+  std::map<std::string, const Shot*> seen;
+  for (const Shot& shot : plan.lit) {
+    if (shot.sha256.empty()) continue;
+    const auto [same, is_new] = seen.emplace(shot.sha256, &shot);
+    if (is_new) continue;
+    plan.warnings.push_back(fmt::format(
+        "{} of LED {} and {} of LED {} are one file, copied: scan again, or leave one of them out",
+        same->second->file, same->second->led, shot.file, shot.led));
+  }
+}
+
 // All shots that are read. Their names tell whether they are raw.
 Result<void> choose_shots(const std::vector<int>& leds, SolvePlan& plan) {
   Result<std::vector<Shot>> lit = choose_lit(plan.session, leds);
@@ -127,6 +142,7 @@ Result<void> choose_shots(const std::vector<int>& leds, SolvePlan& plan) {
   plan.lit = std::move(*lit);
   if (const Shot* dark = plan.session.dark()) plan.dark = *dark;
   plan.raw = !is_linear_image(plan.session.path_of(plan.lit.front()));
+  tell_of_copies(plan);
   choose_parallel(plan);
   choose_more(plan);
   return {};

@@ -408,25 +408,6 @@ Verdict unexplained(const PhotographsSummary& photographs, std::optional<solver:
   return verdict;
 }
 
-// Lamps that stand near brighten the side of the picture that is theirs, in every photograph; the plane that
-// is left over each of them tells it. A lamp or two may have a cause of its own.
-std::optional<Verdict> near_lights(const PhotographsSummary& photographs) {
-  constexpr double kLeastShare = 0.1;  // of the residual's variance
-  std::vector<double> shares;
-  for (const solver::LightEvidence& light : photographs.diagnosis.lights)
-    shares.push_back(light.gradient_share);
-  if (photographs.of_session || photographs.are_near || shares.empty()) return std::nullopt;
-  std::ranges::sort(shares);
-  const double share = (shares[(shares.size() - 1) / 2] + shares[shares.size() / 2]) / 2;
-  if (photographs.diagnosis.residual < kMisfit || !(share > kLeastShare)) return std::nullopt;
-  return Verdict{
-      "LIGHTS_ARE_NEAR",
-      fmt::format("All photographs are brighter towards one side than lamps far away make them: that "
-                  "explains {} percent of what is left over in half of them",
-                  percent_words(share)),
-      "give positions of the lamps in mm and --mm-per-pixel, or move the lamps farther away"};
-}
-
 }  // namespace
 
 bool may_have_moved_far(const PhotographsSummary& photographs) {
@@ -438,16 +419,18 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
                                  std::optional<solver::Level> level) {
   const Speaker say = {photographs};
   std::vector<Verdict> verdicts = photographs.doubts;
+  const auto explains = [](const Verdict& doubt) { return doubt.name != "LIGHTS_MIRRORED"; };
+  const bool is_explained = std::ranges::any_of(photographs.doubts, explains);  // so that readings miss
   for (const FaultKind kind : {FaultKind::kExchanged, FaultKind::kDead, FaultKind::kGain}) {
     for (const Fault& fault : photographs.diagnosis.faults) {
       const bool matters = fault.kind != FaultKind::kGain || fault.moved_deg >= kLeastWarned_deg;
+      if (is_explained && kind != FaultKind::kDead) continue;
       if (fault.kind == kind && matters) verdicts.push_back(say(fault));
     }
   }
   const bool is_dominated =
       specular > kSpecularDominated && photographs.outshining >= solver::kLeastOutshining;
-  std::ranges::move(moved_verdicts(photographs), std::back_inserter(verdicts));
-  if (std::optional<Verdict> near = near_lights(photographs)) verdicts.push_back(std::move(*near));
+  if (!is_explained) std::ranges::move(moved_verdicts(photographs), std::back_inserter(verdicts));
   if (check && verdicts.empty()) {
     if (const std::optional<Verdict> unfit = verdict_of(*check, photographs.of_session, level))
       verdicts.push_back(*unfit);

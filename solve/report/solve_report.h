@@ -84,7 +84,6 @@ struct PhotographsSummary {
   double outshining = 0;                 ///< share of pixels, solver/diagnosis/highlights.h
   std::vector<std::string> warnings;     ///< a sentence each, said when the photographs were read
   std::vector<Verdict> doubts;           ///< whether lights and values are what they are taken for
-  bool are_near = false;                 ///< lights are solved as near ones
   SessionShifts shifts;                  ///< of the photographs as they were read
   std::optional<MovedShots> far_shifts;  ///< where they were looked for
   bool shadow_reach_is_capped = false;

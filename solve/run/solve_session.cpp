@@ -337,7 +337,6 @@ class Run {
     PhotographsSummary& summary = made.summary;
     summary = summarize_photographs(prepared.photographs, prepared.numbers, warnings, context_);
     summary.doubts = prepared.doubts;
-    summary.are_near = std::holds_alternative<NearLights>(prepared.photographs.field->lights());
     summary.session = plan_.session_name;
     summary.left_out = left_out(plan_.session);
     for (const Shot& shot : plan_.lit) summary.shot_of_led[shot.led] = shot.index;

@@ -5,170 +5,221 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <optional>
+#include <numeric>
+
+#include "core/base/statistics.h"
 
 namespace weft::solver {
 namespace {
 
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kFewestBlocks = 50;
-constexpr double kMostWork = 4e8;        // multiplications of one witness
-constexpr double kWorstCondition = 1e4;  // of the lights' normal equations
-constexpr double kSteepest = 0.3;        // nz: beyond it slopes are mostly noise
+constexpr std::size_t kFewestBlocks = 100;
+constexpr double kMostReadings = 2e5;    // that one witness looks at
+constexpr double kMostOfGains = 5e4;     // that each round of gains_of() looks at
+constexpr double kWorstCondition = 2e4;  // of the lights' normal equations, by Frobenius' norm
 
-double median_of(std::vector<double>& values) {
-  if (values.size() < kFewestBlocks) return kNone;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+using Unknowns = Eigen::Matrix<double, 4, 1>;
+using Normal = Eigen::Matrix<double, 4, 4>;
+
+// Every so many blocks are looked at.
+std::size_t step_for(std::span<const BlockTile> tiles, double most) {
+  double readings = 0;
+  for (const BlockTile& tile : tiles) readings += static_cast<double>(tile.readings.size());
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(readings / most)));
 }
 
-// Lights as rows, in another order where one is given, and a column of ones for a constant.
-Eigen::MatrixXd matrix_of(const std::vector<Vec3>& lights, bool has_constant,
-                          std::span<const std::size_t> order) {
-  Eigen::MatrixXd a(static_cast<Eigen::Index>(lights.size()), has_constant ? 4 : 3);
-  for (std::size_t k = 0; k < lights.size(); ++k) {
-    const Vec3& light = lights[order.empty() ? k : order[k]];
-    const auto row = static_cast<Eigen::Index>(k);
-    a.row(row).head<3>() << light.x, light.y, light.z;
-    if (has_constant) a(row, 3) = 1;
+// Where a lamp's light comes from at a place over the picture, as bright as it is there.
+Vec3 light_at(const Vec3& far, double distance, const Vec3& place) {
+  const double strength = length(far);
+  const Vec3 way = distance / strength * far - place;
+  const double ratio = distance / length(way);
+  return strength * ratio * ratio / length(way) * way;
+}
+
+// A block and the lights that light it, as they may be meant.
+class BlockFit {
+ public:
+  explicit BlockFit(const Meaning& meaning) : meaning_(meaning), unknowns_(meaning.has_constant ? 4 : 3) {}
+
+  // False where it says nothing.
+  bool fit(const BlockTile& tile, std::size_t block) {
+    const std::span<const float> readings = tile.of(block);
+    const auto width = static_cast<std::size_t>(tile.width);
+    const Vec3 place = {tile.left + static_cast<double>(block % width),
+                        tile.top - static_cast<double>(block / width),
+                        tile.heights.empty() ? 0 : tile.heights[block]};
+    lit_.clear(), rows_.clear(), values_.clear();
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      if (!std::isfinite(readings[k])) continue;
+      const double value = static_cast<double>(readings[k]);
+      Vec3 light = tile.light(block, meaning_.order.empty() ? k : meaning_.order[k]);
+      if (meaning_.distance > 0) light = light_at(light, meaning_.distance, place);
+      lit_.push_back(k);
+      rows_.push_back({light.x, light.y, light.z, meaning_.has_constant ? 1.0 : 0.0});
+      values_.push_back(meaning_.curve ? meaning_.curve(value) : value);
+    }
+    return lit_.size() > static_cast<std::size_t>(unknowns_) && mean() > 0 && solve();
   }
-  return a;
-}
 
-// A^+, where the lights tell all unknowns.
-std::optional<Eigen::MatrixXd> inverse_of(const Eigen::MatrixXd& a) {
-  if (a.rows() < a.cols()) return std::nullopt;
-  const Eigen::MatrixXd normal = a.transpose() * a;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(normal);
-  const auto& values = parts.eigenvalues();
-  if (!(values(0) > 0) || values(values.size() - 1) > kWorstCondition * values(0)) return std::nullopt;
-  return normal.ldlt().solve(a.transpose());
-}
-
-// Reading minus what the other lights predict, as a matrix on the readings: (1 - h_k)^-1 (I - A A^+).
-std::optional<Eigen::MatrixXd> left_out_matrix(const Eigen::MatrixXd& a) {
-  constexpr double kTold = 1e-6;  // 1 - h: a light that no other says anything of
-  const std::optional<Eigen::MatrixXd> inverse = inverse_of(a);
-  if (!inverse || a.rows() == a.cols()) return std::nullopt;
-  Eigen::MatrixXd residual = -a * *inverse;
-  residual.diagonal().array() += 1;
-  for (Eigen::Index k = 0; k < residual.rows(); ++k) {
-    const double own = residual(k, k);
-    residual.row(k) *= own > kTold ? 1 / own : 0;
+  const std::vector<std::size_t>& lit() const { return lit_; }
+  double constant() const { return solved_(3); }
+  Vec3 normal() const { return normalized({solved_(0), solved_(1), solved_(2)}); }
+  double mean() const {
+    return std::accumulate(values_.begin(), values_.end(), 0.0) / static_cast<double>(values_.size());
   }
-  return residual;
-}
-
-// Calls visit(readings) for the blocks of a tile that have all readings and some light, but for so many that
-// the work stays bounded.
-template <typename Visit>
-void for_each_block(const BlockTile& tile, std::size_t step, const Visit& visit) {
-  const std::size_t count = tile.lights.size();
-  for (std::size_t block = 0; block * count < tile.readings.size(); block += step) {
-    const Eigen::Map<const Eigen::VectorXf> readings(&tile.readings[block * count],
-                                                     static_cast<Eigen::Index>(count));
-    if (readings.allFinite() && readings.mean() > 0) visit(readings.cast<double>());
+  double value(std::size_t i) const { return values_[i]; }
+  // Of the others, of lit light i; NaN where they do not tell.
+  double left_out(std::size_t i) const {
+    constexpr double kTold = 1e-6;
+    const double own = 1 - rows_[i].dot(inverse_ * rows_[i]);
+    return own > kTold ? (values_[i] - rows_[i].dot(solved_)) / own : kNone;
   }
-}
 
-std::size_t step_for(std::span<const BlockTile> tiles) {
-  double work = 0;
-  for (const BlockTile& tile : tiles)
-    work += static_cast<double>(tile.readings.size()) * static_cast<double>(tile.lights.size());
-  return static_cast<std::size_t>(std::max(1.0, std::ceil(work / kMostWork)));
-}
-
-double left_out(std::span<const BlockTile> tiles, bool has_constant, std::span<const std::size_t> order,
-                const std::function<double(double)>& curve) {
-  const std::size_t step = step_for(tiles);
-  std::vector<double> errors;
-  for (const BlockTile& tile : tiles) {
-    const auto matrix = left_out_matrix(matrix_of(tile.lights, has_constant, order));
-    if (!matrix) return std::numeric_limits<double>::infinity();
-    for_each_block(tile, step, [&](Eigen::VectorXd readings) {
-      if (curve) readings = readings.unaryExpr(curve);
-      const double rms = (*matrix * readings).norm() / std::sqrt(static_cast<double>(readings.size()));
-      errors.push_back(rms / readings.mean());
-    });
+ private:
+  bool solve() {
+    Normal normal = Normal::Zero();
+    Unknowns right = Unknowns::Zero();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      normal += rows_[i] * rows_[i].transpose();
+      right += values_[i] * rows_[i];
+    }
+    if (unknowns_ < 4) normal(3, 3) = normal.trace() / 3;  // which no row knows of
+    inverse_ = normal.inverse();
+    solved_ = inverse_ * right;
+    const double condition = normal.norm() * inverse_.norm();
+    return std::isfinite(condition) && condition < kWorstCondition;
   }
-  const double error = median_of(errors);
-  return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
-}
 
-struct Slope {
-  double p = kNone, q = kNone;
+  const Meaning& meaning_;
+  int unknowns_;
+  std::vector<std::size_t> lit_;
+  std::vector<Unknowns> rows_;
+  std::vector<double> values_;
+  Normal inverse_;
+  Unknowns solved_;
 };
 
-std::vector<Slope> slopes_of(const BlockTile& tile) {
-  const std::size_t count = tile.lights.size();
-  std::vector<Slope> slopes(tile.readings.size() / std::max<std::size_t>(count, 1));
-  const auto inverse = inverse_of(matrix_of(tile.lights, false, {}));
-  if (!inverse) return slopes;
-  for (std::size_t block = 0; block < slopes.size(); ++block) {
-    const Eigen::Map<const Eigen::VectorXf> readings(&tile.readings[block * count],
-                                                     static_cast<Eigen::Index>(count));
-    const Eigen::Vector3d g = *inverse * readings.cast<double>();
-    if (g.allFinite() && g.z() > kSteepest * g.norm()) slopes[block] = {-g.x() / g.z(), -g.y() / g.z()};
+// Calls visit(fit) for the blocks that tell something.
+template <typename Visit>
+void for_each_fit(std::span<const BlockTile> tiles, const Meaning& meaning, const Visit& visit,
+                  double most = kMostReadings) {
+  const std::size_t step = step_for(tiles, most);
+  BlockFit fit(meaning);
+  for (const BlockTile& tile : tiles) {
+    for (std::size_t block = 0; block < tile.blocks(); block += step) {
+      if (fit.fit(tile, block)) visit(fit);
+    }
   }
-  return slopes;
 }
 
-// dp/dx, dp/dy, dq/dx, dq/dy at (x, y), with y up, over two blocks.
-std::array<double, 4> derivatives_at(const std::vector<Slope>& slopes, int width, int x, int y) {
-  const auto at = [&](int ax, int ay) { return slopes[static_cast<std::size_t>(ay * width + ax)]; };
-  const Slope east = at(x + 1, y), west = at(x - 1, y), north = at(x, y - 1), south = at(x, y + 1);
-  return {east.p - west.p, north.p - south.p, east.q - west.q, north.q - south.q};
+// One round of gains_of(): by how much more each photograph gathers than the others say.
+std::vector<double> next_gains(std::span<const BlockTile> tiles, std::size_t count) {
+  std::vector<std::vector<double>> ratios(count);
+  const auto compare = [&](const BlockFit& fit) {
+    for (std::size_t i = 0; i < fit.lit().size(); ++i) {
+      const double predicted = fit.value(i) - fit.left_out(i);
+      if (predicted > kLeastLit * fit.mean()) ratios[fit.lit()[i]].push_back(fit.value(i) / predicted);
+    }
+  };
+  for_each_fit(tiles, {}, compare, kMostOfGains);
+  std::vector<double> gains;
+  for (std::vector<double>& each : ratios) {
+    if (each.size() < kFewestBlocks / 4) return {};
+    gains.push_back(quantile(std::move(each), 0.5));
+  }
+  return gains;
 }
 
 }  // namespace
 
-double left_out_error(std::span<const BlockTile> tiles, bool has_constant) {
-  return left_out(tiles, has_constant, {}, nullptr);
-}
-
-double left_out_error_through(std::span<const BlockTile> tiles, const std::function<double(double)>& curve) {
-  return left_out(tiles, false, {}, curve);
-}
-
-double left_out_error_in_order(std::span<const BlockTile> tiles, std::span<const std::size_t> order) {
-  return left_out(tiles, false, order, nullptr);
-}
-
-// If the true lights are M times the given ones, with an orthogonal M, the true slopes are M times the solved
-// ones.
-std::array<double, kSymmetries> curls(std::span<const BlockTile> tiles) {
-  std::array<std::vector<double>, kSymmetries> all;
-  for (const BlockTile& tile : tiles) {
-    const std::vector<Slope> slopes = slopes_of(tile);
-    for (int y = 1; y + 1 < tile.height; ++y) {
-      for (int x = 1; x + 1 < tile.width; ++x) {
-        const auto [px, py, qx, qy] = derivatives_at(slopes, tile.width, x, y);
-        if (!std::isfinite(px + py + qx + qy)) continue;
-        all[0].push_back(std::abs(py - qx));  // (p, q)
-        all[1].push_back(std::abs(py + qx));  // (p, -q)
-        all[2].push_back(std::abs(qy + px));  // (q, -p)
-        all[3].push_back(std::abs(qy - px));  // (q, p)
+std::vector<BlockTile> without_shadows(std::vector<BlockTile> tiles) {
+  for (BlockTile& tile : tiles) {
+    for (std::size_t block = 0; block < tile.blocks(); ++block) {
+      const std::span<float> readings = tile.of(block);
+      const float mean =
+          std::accumulate(readings.begin(), readings.end(), 0.0F) / static_cast<float>(tile.count);
+      for (float& reading : readings) {
+        if (!(mean > 0) || !(reading >= static_cast<float>(kLeastLit) * mean)) reading = kMissing;
       }
     }
   }
-  std::array<double, kSymmetries> medians = {};
-  std::ranges::transform(all, medians.begin(), median_of);
-  return medians;
+  return tiles;
+}
+
+std::vector<BlockTile> without_highlights(std::vector<BlockTile> tiles) {
+  constexpr double kMirrored = 0.75;  // cosine of the angle from the camera
+  constexpr std::size_t kFewest = 6;  // lights that are left
+  const Meaning as_told;
+  BlockFit fit(as_told);
+  for (BlockTile& tile : tiles) {
+    for (std::size_t block = 0; block < tile.blocks(); ++block) {
+      if (!fit.fit(tile, block)) continue;
+      const Vec3 normal = fit.normal();
+      std::vector<std::size_t> shining;
+      for (const std::size_t k : fit.lit()) {
+        const Vec3 light = normalized(tile.light(block, k));
+        if ((2 * dot(normal, light) * normal - light).z > kMirrored) shining.push_back(k);
+      }
+      if (fit.lit().size() - shining.size() < kFewest) continue;
+      for (const std::size_t k : shining) tile.of(block)[k] = kMissing;
+    }
+  }
+  return tiles;
+}
+
+double left_out_error(std::span<const BlockTile> tiles, const Meaning& meaning) {
+  std::vector<double> errors;
+  for_each_fit(tiles, meaning, [&](const BlockFit& fit) {
+    double sum = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < fit.lit().size(); ++i) {
+      const double miss = fit.left_out(i);
+      if (!std::isfinite(miss)) continue;
+      sum += miss * miss;
+      ++count;
+    }
+    if (count > 0) errors.push_back(std::sqrt(sum / count) / fit.mean());
+  });
+  return errors.size() < kFewestBlocks ? std::numeric_limits<double>::infinity()
+                                       : quantile(std::move(errors), 0.5);
 }
 
 double constant_share(std::span<const BlockTile> tiles) {
-  const std::size_t step = step_for(tiles);
   std::vector<double> shares;
-  for (const BlockTile& tile : tiles) {
-    const auto inverse = inverse_of(matrix_of(tile.lights, true, {}));
-    if (!inverse) return kNone;
-    for_each_block(tile, step, [&](const Eigen::VectorXd& readings) {
-      shares.push_back(inverse->row(3).dot(readings) / readings.mean());
-    });
+  for_each_fit(tiles, {.has_constant = true},
+               [&](const BlockFit& fit) { shares.push_back(fit.constant() / fit.mean()); });
+  return shares.size() < kFewestBlocks ? kNone : quantile(std::move(shares), 0.5);
+}
+
+std::vector<BlockTile> evened_out(std::vector<BlockTile> tiles, std::span<const double> gains) {
+  for (BlockTile& tile : tiles) {
+    for (std::size_t i = 0; i < tile.readings.size(); ++i)
+      tile.readings[i] /= static_cast<float>(gains[i % tile.count]);
   }
-  return median_of(shares);
+  return tiles;
+}
+
+// A light that gathers little is taken for shadow at first: what counts is chosen anew now and then.
+std::vector<double> gains_of(std::span<const BlockTile> tiles, bool is_matt) {
+  constexpr int kChoices = 3, kRounds = 10;
+  if (tiles.empty()) return {};
+  std::vector<double> gains(tiles[0].count, 1.0);
+  for (int choice = 0; choice < kChoices; ++choice) {
+    std::vector<BlockTile> lit = without_shadows(evened_out({tiles.begin(), tiles.end()}, gains));
+    if (!is_matt) lit = without_highlights(std::move(lit));
+    for (int round = 0; round < kRounds; ++round) {
+      const std::vector<double> more = next_gains(lit, gains.size());
+      if (more.empty()) return {};
+      lit = evened_out(std::move(lit), more);
+      std::ranges::transform(gains, more, gains.begin(), std::multiplies());
+    }
+  }
+  const double middle = quantile(gains, 0.5);
+  for (double& gain : gains) gain /= middle;
+  return gains;
 }
 
 }  // namespace weft::solver
