@@ -140,11 +140,11 @@ void expose_by_turns(DrawnSet& set, Draws&) {
 }
 
 void sort_as_text(DrawnSet& set, Draws&) {
-  for (std::size_t k = 0; k < set.names.size(); ++k) set.names[k] = fmt::format("img_{}", k + 1);
+  for (std::size_t k = 0; k < set.names.size(); ++k) set.names[k] = fmt::format("img_{}", k + 3);
   std::ranges::sort(set.names);  // the light file goes through them so, and the lights do not
   std::vector<Image<float>> sorted;
   for (const std::string& name : set.names)
-    sorted.push_back(std::move(set.photographs[std::stoul(name.substr(4)) - 1]));
+    sorted.push_back(std::move(set.photographs[std::stoul(name.substr(4)) - 3]));
   set.photographs = std::move(sorted);
 }
 

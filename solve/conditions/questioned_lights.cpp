@@ -31,11 +31,11 @@ using solver::BlockTile;
 
 constexpr int kBlock = 4;  // pixels
 // Times as well as left-out light is to be predicted, so that each is told.
-constexpr double kTellsCurve = 1.5, kTellsOrder = 1.5, kTellsConstant = 1.25, kTellsNear = 1.2,
+constexpr double kTellsCurve = 1.5, kTellsOrder = 1.5, kTellsConstant = 1.1, kTellsNear = 1.2,
                  kTellsGains = 3;
-constexpr double kIsSure = 2;            // so that a curve is mended
-constexpr double kLeastConstant = 0.03;  // of a reading
-constexpr double kSimpler = 3;           // times as well must what has more unknowns predict it
+constexpr double kIsSure = 2;             // so that a curve is mended
+constexpr double kLeastConstant = 0.015;  // of a reading
+constexpr double kSimpler = 3;            // times as well must what has more unknowns predict it
 
 double through_srgb(double value) {
   return rec709_of_srgb({value, value, value})[0];
@@ -108,8 +108,10 @@ class Asked {
       found.curve = times({.curve = plan_.transfer == Transfer::kSrgb ? to_srgb : through_srgb});
     if (const std::vector<std::size_t> order = counted_order(plan_.lit); !order.empty())
       found.order = times({.order = order});
-    found.share = solver::constant_share(tiles);
-    if (found.share > kLeastConstant) found.constant = times({.has_constant = true});
+    const solver::ConstantShare share = solver::constant_share(tiles);
+    found.share = share.median;
+    if (share.median > kLeastConstant && share.lower > 0.25 * share.median)
+      found.constant = times({.has_constant = true});
     if (are_distant_) look_near(times, found);
     look_at_gains(is_matt, found);
     return found;

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "core/base/parallel.h"
+#include "solve/photographs/picture_axes.h"
 #include "solver/sample_tiles.h"
 
 namespace weft::solve {
@@ -20,6 +21,7 @@ double block_mean(View<const float> plane, int x0, int y0, int side) {
   return sum / (side * side);
 }
 
+// By the axes of the picture.
 Vec3 light_at(const Photographs& photographs, std::size_t k, int x, int y) {
   const bool is_mosaic = photographs.planes().count == 1;
   Vec3 sum;
@@ -27,7 +29,7 @@ Vec3 light_at(const Photographs& photographs, std::size_t k, int x, int y) {
     const LightField::Light light = photographs.field->at(k, is_mosaic ? c : 1, x, y);
     sum = sum + 0.25 * light.strength * light.direction;
   }
-  return sum;
+  return picture_from_rig(photographs.camera) * sum;
 }
 
 // Near lights differ from cell to cell of their field.

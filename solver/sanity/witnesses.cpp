@@ -127,22 +127,21 @@ std::vector<double> next_gains(std::span<const BlockTile> tiles, std::size_t cou
   for_each_fit(tiles, {}, compare, kMostOfGains);
   std::vector<double> gains;
   for (std::vector<double>& each : ratios) {
-    if (each.size() < kFewestBlocks / 4) return {};
-    gains.push_back(quantile(std::move(each), 0.5));
+    gains.push_back(each.size() < kFewestBlocks / 4 ? kNone : quantile(std::move(each), 0.5));
   }
   return gains;
 }
 
 }  // namespace
 
-std::vector<BlockTile> without_shadows(std::vector<BlockTile> tiles) {
+std::vector<BlockTile> without_shadows(std::vector<BlockTile> tiles, double least_lit) {
   for (BlockTile& tile : tiles) {
     for (std::size_t block = 0; block < tile.blocks(); ++block) {
       const std::span<float> readings = tile.of(block);
       const float mean =
           std::accumulate(readings.begin(), readings.end(), 0.0F) / static_cast<float>(tile.count);
       for (float& reading : readings) {
-        if (!(mean > 0) || !(reading >= static_cast<float>(kLeastLit) * mean)) reading = kMissing;
+        if (!(mean > 0) || !(reading >= static_cast<float>(least_lit) * mean)) reading = kMissing;
       }
     }
   }
@@ -187,11 +186,12 @@ double left_out_error(std::span<const BlockTile> tiles, const Meaning& meaning) 
                                        : quantile(std::move(errors), 0.5);
 }
 
-double constant_share(std::span<const BlockTile> tiles) {
+ConstantShare constant_share(std::span<const BlockTile> tiles) {
   std::vector<double> shares;
   for_each_fit(tiles, {.has_constant = true},
                [&](const BlockFit& fit) { shares.push_back(fit.constant() / fit.mean()); });
-  return shares.size() < kFewestBlocks ? kNone : quantile(std::move(shares), 0.5);
+  if (shares.size() < kFewestBlocks) return {kNone, kNone};
+  return {quantile(shares, 0.25), quantile(shares, 0.5)};
 }
 
 std::vector<BlockTile> evened_out(std::vector<BlockTile> tiles, std::span<const double> gains) {
@@ -204,15 +204,20 @@ std::vector<BlockTile> evened_out(std::vector<BlockTile> tiles, std::span<const 
 
 // A light that gathers little is taken for shadow at first: what counts is chosen anew now and then.
 std::vector<double> gains_of(std::span<const BlockTile> tiles, bool is_matt) {
-  constexpr int kChoices = 3, kRounds = 10;
+  constexpr int kChoices = 3;
+  constexpr std::size_t kFew = 16;  // lights, which take long to agree
   if (tiles.empty()) return {};
+  const int rounds = tiles[0].count < kFew ? 40 : 10;
   std::vector<double> gains(tiles[0].count, 1.0);
   for (int choice = 0; choice < kChoices; ++choice) {
-    std::vector<BlockTile> lit = without_shadows(evened_out({tiles.begin(), tiles.end()}, gains));
+    const double least_lit = choice == 0 ? kLeastLit / 2 : kLeastLit;
+    std::vector<BlockTile> lit = without_shadows(evened_out({tiles.begin(), tiles.end()}, gains), least_lit);
     if (!is_matt) lit = without_highlights(std::move(lit));
-    for (int round = 0; round < kRounds; ++round) {
-      const std::vector<double> more = next_gains(lit, gains.size());
-      if (more.empty()) return {};
+    for (int round = 0; round < rounds; ++round) {
+      std::vector<double> more = next_gains(lit, gains.size());
+      const bool is_last = choice + 1 == kChoices && round + 1 == rounds;
+      if (is_last && !std::ranges::all_of(more, [](double gain) { return gain > 0; })) return {};
+      for (double& gain : more) gain = gain > 0 ? gain : 1;
       lit = evened_out(std::move(lit), more);
       std::ranges::transform(gains, more, gains.begin(), std::multiplies());
     }

@@ -14,7 +14,7 @@ namespace weft::solver {
 
 /// Tiles without the readings that Lambert's law does not explain, which become NaN: those in shadow, or so
 /// aslant that they may be, and of what is left those that a lobe may add much to.
-std::vector<BlockTile> without_shadows(std::vector<BlockTile> tiles);
+std::vector<BlockTile> without_shadows(std::vector<BlockTile> tiles, double least_lit = kLeastLit);
 std::vector<BlockTile> without_highlights(std::vector<BlockTile> tiles);
 
 /// How photographs may be meant. Nothing said: as they are taken for.
@@ -30,9 +30,12 @@ struct Meaning {
 /// unknowns.
 double left_out_error(std::span<const BlockTile> tiles, const Meaning& meaning = {});
 
-/// A light that is in all photographs, by its share of a block's mean reading: the median over the blocks.
-/// NaN where lights do not tell it.
-double constant_share(std::span<const BlockTile> tiles);
+/// A light that is in all photographs, by its share of a block's mean reading: the lower quartile and the
+/// median over the blocks. NaN where lights do not tell it.
+struct ConstantShare {
+  double lower = 0, median = 0;
+};
+ConstantShare constant_share(std::span<const BlockTile> tiles);
 
 /// The same tiles with readings divided by gains.
 std::vector<BlockTile> evened_out(std::vector<BlockTile> tiles, std::span<const double> gains);
