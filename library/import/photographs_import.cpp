@@ -63,7 +63,7 @@ void put_shots(const solve::SolvePlan& photos, ProposedPhotographs& planned) {
     put(photos.lit[k], ShotRole::kLit, name, photos.input.photographs[k].sha256);
     planned.lights.lights[k].photograph = fs::path(session.shots.back().file).filename();
   }
-  if (photos.dark) put(*photos.dark, ShotRole::kDark, "dark", photos.input.dark);
+  if (photos.dark) put(*photos.dark, ShotRole::kDark, "unlit", photos.input.dark);
 }
 
 /// What people say of them, in their folder or above it.

@@ -35,6 +35,7 @@ constexpr double kTellsCurve = 1.5, kTellsOrder = 1.5, kTellsConstant = 1.1, kTe
                  kTellsGains = 3;
 constexpr double kIsSure = 2;             // so that a curve is mended
 constexpr double kLeastConstant = 0.015;  // of a reading
+constexpr double kMostConstant = 0.95;    // beyond, no light of a room explains it
 constexpr double kSimpler = 3;            // times as well must what has more unknowns predict it
 
 double through_srgb(double value) {
@@ -160,6 +161,12 @@ Verdict order_verdict(const Findings& found) {
 }
 
 Verdict constant_verdict(const Findings& found) {
+  if (found.share > kMostConstant) {
+    return {"LIGHTS_DO_NOT_FIT",
+            "The photographs contradict the directions of their lights, and no light that is in all of them "
+            "explains it",
+            "check the order of photographs and lights, and each light's height over the table"};
+  }
   return {"LIGHT_IN_ALL",
           fmt::format("A light that is in all photographs, {} percent of their light, would predict left-out "
                       "light {:.2g} times as well: a lit room, or a black level that was left in",
