@@ -88,18 +88,23 @@ Result<void> find_full_scale(const Exposures& exposures) {
   std::array<float, 3> found = {};
   for (int c = 0; c < 3; ++c) {
     std::vector<float> each(photographs.size());
-    parallel_for(each.size(), exposures.context.threads,
-                 [&](std::size_t k, int) { each[k] = largest_in(photographs[k].plane(c)); });
+    parallel_for(each.size(), exposures.context.threads, [&](std::size_t k, int) {
+      each[k] = largest_in(photographs[k].plane(c));
+      developed->page_out(k);
+    });
     const float largest = std::ranges::max(each);
     if (!(largest > 0)) continue;
     std::vector<Top> tops(photographs.size());
     parallel_for(tops.size(), exposures.context.threads, [&](std::size_t k, int) {
       if (each[k] >= static_cast<float>(kBelow) * largest) tops[k] = top_of(photographs[k].plane(c), largest);
+      developed->page_out(k);
     });
     if (!is_a_pile(tops, exposures.photographs.size.pixels())) continue;
     found[static_cast<std::size_t>(c)] = largest;
-    parallel_for(photographs.size(), exposures.context.threads,
-                 [&](std::size_t k, int) { mark(photographs[k].plane(c), largest); });
+    parallel_for(photographs.size(), exposures.context.threads, [&](std::size_t k, int) {
+      mark(photographs[k].plane(c), largest);
+      developed->page_out(k);
+    });
   }
   if (found != std::array<float, 3>{}) {
     exposures.photographs.conditions.assumed.push_back(fmt::format(

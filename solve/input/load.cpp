@@ -14,6 +14,7 @@
 #include "capture/frames/session_frames.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
+#include "core/image/page_out.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/linear_image.h"
 #include "solve/conditions/conditions.h"
@@ -172,6 +173,7 @@ Result<Image<float>> moved_to_disk(const Image<float>& image) {
     for (int y = 0; y < image.height(); ++y)
       std::copy_n(image.plane(p).row(y), image.width(), kept->plane(p).row(y));
   }
+  page_out(*kept);
   return std::move(*kept);
 }
 
@@ -200,11 +202,12 @@ Result<void> read_developed(const SolvePlan& plan, const JobContext& context, Ph
       if (!dark.empty()) subtract(image, dark.front());
       if (plan.ambient != 0) brighten(image, -plan.ambient);
       if (plan.is_of_rig) scale(image, 1 / (first.exposure_us * 1e-6 * first.iso / 100));
+      if (on_disk) page_out(image);
     }
   }
-  photographs.frames = Developed{std::move(lit)};
-  beside.repeats = Developed{take(*frames, plan.repeats.size())};
-  if (!plan.parallel.empty()) photographs.parallel = Developed{std::move(*frames)};
+  photographs.frames = Developed(std::move(lit), on_disk);
+  beside.repeats = Developed(take(*frames, plan.repeats.size()), on_disk);
+  if (!plan.parallel.empty()) photographs.parallel = Developed(std::move(*frames), on_disk);
   return {};
 }
 

@@ -116,7 +116,7 @@ Result<Photographs> half_size(const Photographs& photographs, int threads) {
     for (std::size_t k = 0; k < rgb.size(); ++k)
       halve_rows(planes, readings.subspan(k * count, count), y, rgb[k]);
   });
-  half.frames = Developed{std::move(rgb)};
+  half.frames = Developed(std::move(rgb));
   half.lobe_share = photographs.lobe_share;
   half.plane_weights = photographs.plane_weights;
   return half;

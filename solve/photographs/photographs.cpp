@@ -6,12 +6,31 @@
 #include <ranges>
 #include <utility>
 
+#include "core/image/page_out.h"
 #include "core/solve/solve_record.h"
 
 namespace weft::solve {
 
+namespace {
+// So much of photographs on disk lies in memory, however many there are.
+constexpr std::size_t kMostShown = std::size_t{256} << 20;
+constexpr std::size_t kMappedAround = std::size_t{64} << 10;  // what Linux maps beside a page that is read
+}  // namespace
+
 std::vector<View<const float>> Developed::readings(std::size_t k, Rect part, View<float> /*scratch*/) const {
+  if (are_on_disk_) {
+    const auto row = static_cast<std::size_t>(rgb[k].plane(0).stride()) * sizeof(float);
+    const std::size_t shown = 3 * (row * static_cast<std::size_t>(part.height()) + kMappedAround);
+    if (shown_->fetch_add(shown) > kMostShown) {
+      *shown_ = 0;
+      for (const Image<float>& photograph : rgb) weft::page_out(photograph);
+    }
+  }
   return {rgb[k].plane(0).crop(part), rgb[k].plane(1).crop(part), rgb[k].plane(2).crop(part)};
+}
+
+void Developed::page_out(std::size_t k) const {
+  if (are_on_disk_) weft::page_out(rgb[k]);
 }
 
 void Developed::erase(std::size_t k) {

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -41,6 +44,10 @@ struct Planes {
 
 /// Linear RGB, developed by somebody else.
 struct Developed {
+  Developed() = default;
+  explicit Developed(std::vector<Image<float>> readings, bool lie_on_disk = false)
+      : rgb(std::move(readings)), are_on_disk_(lie_on_disk) {}
+
   std::vector<Image<float>> rgb;  ///< readings, planes R, G, B (core/rig/radiometry.h)
 
   std::size_t count() const { return rgb.size(); }
@@ -48,6 +55,13 @@ struct Developed {
   std::optional<NoiseModel> noise_model() const { return {}; }
   std::vector<View<const float>> readings(std::size_t k, Rect part, View<float> scratch) const;
   void erase(std::size_t k);
+  /// What lies on disk leaves memory until it is read again.
+  void page_out(std::size_t k) const;
+
+ private:
+  bool are_on_disk_ = false;  ///< Image::on_disk
+  /// Bytes that were shown of photographs on disk since all of them were last paged out.
+  std::unique_ptr<std::atomic<std::size_t>> shown_ = std::make_unique<std::atomic<std::size_t>>(0);
 };
 
 /// A mosaic once more at another exposure.

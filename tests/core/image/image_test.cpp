@@ -2,10 +2,17 @@
 #include "core/image/image.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <fstream>
+#include <optional>
 #include <type_traits>
+
+#include "core/base/temporary_folder.h"
+#include "core/image/page_out.h"
 
 namespace weft {
 namespace {
@@ -114,6 +121,29 @@ TEST(View, ACropCountsFromItsOwnCorner) {
 TEST(Size, CountsPixelsBeyondThirtyTwoBits) {
   EXPECT_EQ((Size{100'000, 100'000}.pixels()), 10'000'000'000);
   EXPECT_EQ((Rect{0, 0, 100'000, 100'000}.pixels()), 10'000'000'000);
+}
+
+// Resident pages of files, in bytes (proc(5), statm).
+std::int64_t resident_file_bytes() {
+  std::int64_t size = 0, resident = 0, shared = 0;
+  std::ifstream("/proc/self/statm") >> size >> resident >> shared;
+  return shared * sysconf(_SC_PAGESIZE);
+}
+
+TEST(ImageOnDisk, LeavesMemoryWhenPagedOutAndKeepsItsPixels) {
+  const TemporaryFolder folder;
+  std::optional<Image<float>> image = Image<float>::on_disk({2000, 1000}, 3, folder.path().c_str());
+  ASSERT_TRUE(image);
+  for (int p = 0; p < 3; ++p) {
+    for (int y = 0; y < 1000; ++y)
+      std::fill_n(image->plane(p).row(y), 2000, static_cast<float>(10000 * p + y));
+  }
+  const std::int64_t held = resident_file_bytes();
+  page_out(*image);
+  EXPECT_LT(resident_file_bytes(), held - 20'000'000) << "of 24 MB";
+  for (int p = 0; p < 3; ++p) {
+    for (int y = 0; y < 1000; y += 99) EXPECT_EQ((*image)(1999, y, p), static_cast<float>(10000 * p + y));
+  }
 }
 
 }  // namespace
