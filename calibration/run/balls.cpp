@@ -25,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kLongestSide = 2000;
+constexpr double kMostBytes = 1e9;
 constexpr const char* kPictureName = "balls.png";
 constexpr double kMaskMargin = 1.05;  // of the radius: an edge is blurred, and throws light about it
 constexpr double kNearLamps_deg = 0.5;
@@ -122,6 +123,14 @@ Result<ReadPicture> read_picture(const fs::path& file, Transfer transfer) {
   return ReadPicture{std::move(shown), size};
 }
 
+// So that pictures have at most kLongestSide pixels a side, and all together fit into kMostBytes.
+int shrunk_by(Size size, std::size_t count) {
+  int by = std::max(1, (std::max(size.width, size.height) + kLongestSide - 1) / kLongestSide);
+  const double bytes = sizeof(float) * static_cast<double>(size.pixels()) * static_cast<double>(count);
+  while (bytes / (by * by) > kMostBytes) ++by;
+  return by;
+}
+
 struct ReadShots {
   BallPhotographs photographs;
   Size size;
@@ -134,10 +143,8 @@ Result<ReadShots> read_shots(const std::vector<fs::path>& files, Transfer transf
     const Result<ReadPicture> picture = read_picture(file, transfer);
     if (!picture) return picture.error();
     if (read.photographs.shots.empty()) {
-      const Size seen = picture->rgb.size();
       read.size = picture->size;
-      read.by =
-          picture->cell * std::max(1, (std::max(seen.width, seen.height) + kLongestSide - 1) / kLongestSide);
+      read.by = picture->cell * shrunk_by(picture->rgb.size(), files.size());
     }
     if (picture->size != read.size)
       return Error{ErrorKind::kBadData, "photographs differ in size", file.string(),

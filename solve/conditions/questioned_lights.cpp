@@ -223,6 +223,7 @@ void convert(Developed& developed, Transfer taken, int threads) {
         });
       }
     }
+    developed.page_out(k);
   });
 }
 
