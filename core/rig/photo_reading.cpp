@@ -16,7 +16,7 @@ void describe(Fields& fields, PhotoReading& r) {
   fields.choice(
       {.name = "flip",
        .says = "What is done to the directions of their lights: none, x, y, z or all turned round, left "
-               "or right by a quarter, half (by a half), exchange (x for y), against (x for -y)",
+               "or right by a quarter, half (x and y), exchange (x for y), against (x for -y)",
        .need = kUnlessEmpty},
       r.flip, kLightFlipNames);
   fields.value({.name = "mm_per_pixel",

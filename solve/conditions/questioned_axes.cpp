@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/base/percent.h"
-#include "solve/photographs/blocks.h"
-#include "solver/sanity/surface.h"
+#include "solve/photographs/photograph_blocks.h"
+#include "solver/sanity/surface_witnesses.h"
 
 namespace weft::solve {
 namespace {

@@ -20,8 +20,8 @@
 #include "core/base/text.h"
 #include "core/image/color_spaces.h"
 #include "solve/conditions/questioned_axes.h"
-#include "solve/photographs/blocks.h"
-#include "solver/sanity/surface.h"
+#include "solve/photographs/photograph_blocks.h"
+#include "solver/sanity/surface_witnesses.h"
 #include "solver/sanity/witnesses.h"
 
 namespace weft::solve {

@@ -20,7 +20,7 @@ struct PhotoOptions {
   std::filesystem::path light_file;
   bool skips_missing = false;  ///< leaves out lights whose photograph is not there
   PhotoReading reading;
-  std::filesystem::path dark;  ///< the same with all lamps off; empty: none
+  std::filesystem::path dark;  ///< the same with all lamps off; empty: dark.* or ambient.* of the folder
   std::filesystem::path mask;  ///< where the cloth is; empty: that of `folder`, if it has one
   Clipped clipped = Clipped::kMark;
   std::vector<int> lights;  ///< numbers from 1; empty: all

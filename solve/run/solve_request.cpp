@@ -169,7 +169,8 @@ void describe(Fields& fields, SolveRequest& r) {
   describe_readings(fields, r);
   describe(fields, r.session.reading);
   fields.value({.name = "dark",
-                .says = "The same photograph with all lamps off, which is taken from the others",
+                .says = "The same photograph with all lamps off, which is taken from the others; else dark.* or "
+                        "ambient.* beside them",
                 .said = Said::kAtThisMachine},
                r.photos.dark);
   fields.exclude("session", "dark");

@@ -20,7 +20,7 @@ struct BlockTile {
   std::vector<Vec3> lights;
   int light_step = 0, light_columns = 1;
   std::vector<float> readings;  ///< of block (x, y) in photograph k at (y * width + x) * K + k; NaN: none
-  std::vector<double> heights;  ///< of the blocks, in blocks (surface.h); empty: flat
+  std::vector<double> heights;  ///< of the blocks, in blocks (surface_witnesses.h); empty: flat
   double left = 0, top = 0;     ///< of block (0, 0), in blocks from the middle of the picture, y up
 
   std::size_t blocks() const { return count == 0 ? 0 : readings.size() / count; }

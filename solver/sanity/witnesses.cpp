@@ -71,7 +71,7 @@ class BlockFit {
     return std::accumulate(values_.begin(), values_.end(), 0.0) / static_cast<double>(values_.size());
   }
   double value(std::size_t i) const { return values_[i]; }
-  // Of the others, of lit light i; NaN where they do not tell.
+  // What lit light i gives beyond what the others predict; NaN where they do not tell.
   double left_out(std::size_t i) const {
     constexpr double kTold = 1e-6;
     const double own = 1 - rows_[i].dot(inverse_ * rows_[i]);

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <vector>
 
-#include "solver/sanity/surface.h"
+#include "solver/sanity/surface_witnesses.h"
 
 namespace weft::solver {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/sanity/surface.h"
+#include "solver/sanity/surface_witnesses.h"
 
 #include <Eigen/Dense>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solve/photographs/blocks.h"
+#include "solve/photographs/photograph_blocks.h"
 
 #include <algorithm>
 #include <variant>
