@@ -16,8 +16,9 @@ namespace {
 
 using solver::BlockTile;
 
-constexpr int kFine = 2;           // pixels of a block
-constexpr double kLessCurl = 0.8;  // of the curl as given
+constexpr int kFine = 2;             // pixels of a block
+constexpr double kLessCurl = 0.8;    // of the curl as given
+constexpr double kLeastCurl = 2e-3;  // slope from block to block: less is a flat card's rounding
 
 std::string remedy_of(solver::Symmetry meant, bool is_of_rig) {
   if (is_of_rig) {
@@ -44,7 +45,7 @@ std::optional<Verdict> doubt_curl(const std::vector<BlockTile>& tiles, bool is_o
   const auto curls = solver::curls(tiles);
   const auto least = static_cast<std::size_t>(std::ranges::min_element(curls) - curls.begin());
   const double share = curls[least] / curls[0];
-  if (!(share < kLessCurl)) return std::nullopt;
+  if (!(share < kLessCurl) || !(curls[0] > kLeastCurl)) return std::nullopt;
   return Verdict{
       "LIGHTS_MIRRORED",
       fmt::format("The lights are {}: so the solved normals would be those of a surface (their curl "

@@ -14,9 +14,9 @@ namespace weft::solver {
 struct BlockTile {
   int width = 0, height = 0;  ///< blocks
   std::size_t count = 0;      ///< K
-  /// Of photograph k at (row * columns + column) * K + k, direction times irradiance; y up, z to the camera.
-  /// Rows and columns of the grid are so many blocks apart, from block (0, 0) on, with one more than the tile
-  /// needs; 0: lights are alike everywhere, and there is one place.
+  /// That of photograph k is at (row * columns + column) * K + k, direction times irradiance; y up, z to the
+  /// camera. Rows and columns of the grid are so many blocks apart, from block (0, 0) on, with one more than
+  /// the tile needs; 0: lights are alike everywhere, and there is one place.
   std::vector<Vec3> lights;
   int light_step = 0, light_columns = 1;
   std::vector<float> readings;  ///< of block (x, y) in photograph k at (y * width + x) * K + k; NaN: none
@@ -40,7 +40,7 @@ struct BlockTile {
   }
 };
 
-/// Of a block's mean reading: a light that gives less is in shadow, or so aslant that it may be.
+/// As a share of a block's mean reading: a light that gives less is in shadow, or so aslant that it may be.
 inline constexpr double kLeastLit = 0.25;
 
 }  // namespace weft::solver
