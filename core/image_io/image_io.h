@@ -32,8 +32,9 @@ using ImageAttributes = std::map<std::string, std::string>;
 /// pixels a metre (pHYs), TIFF and EXR pixels an inch to seven digits; TIFF none of less than one an inch.
 using PixelPitch = std::array<double, 2>;
 
-/// What a file says of its colours. Their transfer function is told by the chunks cICP, iCCP, sRGB and gAMA of
-/// a PNG, the ICC profile of a TIFF or JPEG, the chromaticities of an EXR. A JPEG without a profile is sRGB.
+/// What a file says of its colours. Their transfer function is told by the chunks cICP, iCCP, sRGB and gAMA
+/// of a PNG, the ICC profile of a TIFF or JPEG, the chromaticities of an EXR. A JPEG without a profile is
+/// sRGB.
 enum class ColorSpace {
   kData,         ///< they are none, or nothing is said
   kSrgb,         ///< that of IEC 61966-2-1, which PNG and TIFF are written with

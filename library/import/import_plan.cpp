@@ -49,8 +49,10 @@ Result<ImportPlace> place_of(const ImportOptions& options) {
 
 Result<Calibration> calibration_for(const ImportPlace& place) {
   if (place.calibration.empty()) {
-    return Error{ErrorKind::kUsage, "nothing names a calibration", "--calibration", "",
-                 "name the calibration of the rig that took the photographs, or the rig with --rig"};
+    return Error{
+        ErrorKind::kUsage, "nothing names a calibration", "--calibration", "",
+        "name the calibration of the rig that took the photographs, or the rig with --rig; photographs "
+        "that no rig took need a light file beside them, or --ball"};
   }
   Result<Calibration> calibration = read_calibration(place.calibration);
   if (!calibration) return calibration;
@@ -285,6 +287,8 @@ Result<void> plan_sessions(const ImportOptions& options, const ImportPlace& plac
                            SourceFolders& found, const JobContext& context, ImportProposal& plan,
                            std::set<fs::path>& described) {
   if (found.frames.empty()) return {};
+  // Without a rig they may be photographs whose lights nobody could read.
+  if (place.calibration.empty() && !found.unread_lights.empty()) return found.unread_lights.front();
   const Result<Calibration> calibration = calibration_for(place);
   if (!calibration) return calibration.error();
   plan.calibration = absolute_folder(place.calibration);

@@ -46,7 +46,9 @@ void describe_rig(Fields& fields, ImportOptions& o) {
                 .option = "--height"},
                o.cloth_height_mm);
   fields.value(
-      {.name = "missing", .says = "Take sessions that lack LEDs, where names or the light tell which"},
+      {.name = "missing",
+       .says = "Take sessions that lack LEDs, where names or the light tell which, and photographs that lack "
+               "some of their lights'"},
       o.takes_missing);
 }
 

@@ -172,6 +172,7 @@ std::vector<ProposedPhotographs> plan_photographs(const SourceFolders& found, co
   solve::PhotoOptions photos;
   photos.reading = options.reading;
   photos.dark = options.dark;
+  photos.skips_missing = options.takes_missing;
   for (const fs::path& file : found.light_files) {
     // RTIBuilder keeps its light files in a folder of that name.
     const bool is_rtibuilder = file.parent_path().filename() == "assembly-files";

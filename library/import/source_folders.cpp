@@ -88,6 +88,8 @@ class Walk {
       } else if (const Result<solve::LightList> list = solve::read_light_list(file)) {
         has_table = true;
         is_nameless = list->lights.front().name.empty();
+      } else {
+        found_.unread_lights.push_back(list.error());
       }
     }
     if (has_table && is_nameless && !has_pictures && files.empty()) return LightsAbove::kNameless;

@@ -31,6 +31,7 @@ struct SourceFolders {
   std::vector<std::filesystem::path> photo_folders;
   /// Pictures and raws in and below folders that have lights: of these, or of nothing.
   std::vector<std::filesystem::path> beside_lights;
+  std::vector<Error> unread_lights;  ///< why a file is none of lights that has the name of such a one
   std::vector<std::filesystem::path> descriptions;  ///< import.toml and .json files
   std::vector<LeftOver> left_over;                  ///< files that are none of these, sessions of weft
 };

@@ -168,11 +168,12 @@ void describe(Fields& fields, SolveRequest& r) {
   describe_level(fields, r);
   describe_readings(fields, r);
   describe(fields, r.session.reading);
-  fields.value({.name = "dark",
-                .says = "The same photograph with all lamps off, which is taken from the others; else dark.* or "
-                        "ambient.* beside them",
-                .said = Said::kAtThisMachine},
-               r.photos.dark);
+  fields.value(
+      {.name = "dark",
+       .says = "The same photograph with all lamps off, which is taken from the others; else dark.* or "
+               "ambient.* beside them",
+       .said = Said::kAtThisMachine},
+      r.photos.dark);
   fields.exclude("session", "dark");
   describe_maps(fields, r);
 }

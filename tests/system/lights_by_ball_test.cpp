@@ -12,6 +12,7 @@
 #include "core/image_io/image_io.h"
 #include "core/rig/session.h"
 #include "simulator/scene/scene_rig.h"
+#include "simulator/simulate.h"
 #include "tests/system/program.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"

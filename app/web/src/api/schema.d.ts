@@ -7351,11 +7351,11 @@ export interface components {
              */
             orientation?: "shown" | "stored";
             /**
-             * @description What is done to the directions of their lights: none, x, y, z or all turned round, left or right by a quarter, exchange (x for y), against (x for -y)
+             * @description What is done to the directions of their lights: none, x, y, z or all turned round, left or right by a quarter, half (x and y), exchange (x for y), against (x for -y)
              * @default none
              * @enum {string}
              */
-            flip?: "none" | "x" | "y" | "z" | "all" | "left" | "right" | "exchange" | "against";
+            flip?: "none" | "x" | "y" | "z" | "all" | "left" | "right" | "exchange" | "against" | "half";
             /** @description Of the cloth, mm; positions of lights are then near lights, in mm over its middle */
             mm_per_pixel?: number;
             /** @description Of the picture's width, degrees; without it, it is seen from far away */
@@ -7441,11 +7441,11 @@ export interface components {
              */
             orientation?: "shown" | "stored";
             /**
-             * @description What is done to the directions of their lights: none, x, y, z or all turned round, left or right by a quarter, exchange (x for y), against (x for -y)
+             * @description What is done to the directions of their lights: none, x, y, z or all turned round, left or right by a quarter, half (x and y), exchange (x for y), against (x for -y)
              * @default none
              * @enum {string}
              */
-            flip?: "none" | "x" | "y" | "z" | "all" | "left" | "right" | "exchange" | "against";
+            flip?: "none" | "x" | "y" | "z" | "all" | "left" | "right" | "exchange" | "against" | "half";
             /** @description Of the cloth, mm; positions of lights are then near lights, in mm over its middle */
             mm_per_pixel?: number;
             /** @description Of the picture's width, degrees; without it, it is seen from far away */
@@ -7572,7 +7572,7 @@ export interface components {
             /** @description Of the cloth's surface above the table, where no import.toml says it; default the rig's, or 0 */
             height_mm?: number;
             /**
-             * @description Take sessions that lack LEDs, where names or the light tell which
+             * @description Take sessions that lack LEDs, where names or the light tell which, and photographs that lack some of their lights'
              * @default false
              */
             missing?: boolean;
@@ -7607,11 +7607,11 @@ export interface components {
              */
             orientation?: "shown" | "stored";
             /**
-             * @description What is done to the directions of their lights: none, x, y, z or all turned round, left or right by a quarter, exchange (x for y), against (x for -y)
+             * @description What is done to the directions of their lights: none, x, y, z or all turned round, left or right by a quarter, half (x and y), exchange (x for y), against (x for -y)
              * @default none
              * @enum {string}
              */
-            flip?: "none" | "x" | "y" | "z" | "all" | "left" | "right" | "exchange" | "against";
+            flip?: "none" | "x" | "y" | "z" | "all" | "left" | "right" | "exchange" | "against" | "half";
             /** @description Of the cloth, mm; positions of lights are then near lights, in mm over its middle */
             mm_per_pixel?: number;
             /** @description Of the picture's width, degrees; without it, it is seen from far away */
