@@ -134,7 +134,9 @@ std::string why_outdated(const Session& session, const Session& today, const Jso
     if (is_wanted(today, lit, used, shot) && !is_among(used, shot))
       return fmt::format("it was solved without {}, the photograph of {}", shot.file, name_of_led(shot.led));
   }
-  return session.is_of_rig() ? "" : why_read_otherwise(*session.photographs, solve.value("input", Json()));
+  const Json input = solve.value("input", Json());
+  const bool is_told = input.is_object() && !session.is_of_rig() && !is_lone_solve(session);
+  return is_told ? why_read_otherwise(*session.photographs, input) : "";
 }
 
 std::string written_at(const fs::path& file) {

@@ -80,6 +80,7 @@ Result<Session> read_solved(const fs::path& folder) {
                  "maps are made of the session that it lies in",
                  fmt::format("name the session, and of its solves this one with --solve {}", facts->id)};
   }
+  session.document = Json::object();
   session.photographs.emplace();
   if (const auto mm = document->find(kPixel); mm != document->end()) {
     if (!is_pixel(*mm)) {

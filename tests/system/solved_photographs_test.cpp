@@ -86,6 +86,12 @@ TEST_F(SolvedPhotographs, StayPixelByPixelAsTheyAreOnTheirOwnGrid) {
 }
 
 // The camera that stands for none sees the photographs' own grid, half a turn of which is pixels again.
+TEST_F(SolvedPhotographs, ByLightsThatWereTurnedRoundAreNotOutdated) {
+  done("solve --photos photos -o turned --flip x -q");
+  EXPECT_EQ(stored("turned/solve.json")["input"]["flip"], "x");
+  EXPECT_EQ(json_of("status turned")["sessions"][0]["links"][1]["freshness"], "fresh");
+}
+
 TEST_F(SolvedPhotographs, AreTurnedByWholePixels) {
   const fs::path turned = json_of("rectify linen --turn 180")["folder"].get<std::string>();
   const Result<LoadedImage> was = read_image(solve_ / "albedo.exr"), is = read_image(turned / "albedo.exr");
