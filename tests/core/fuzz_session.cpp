@@ -22,8 +22,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const weft::Shot& shot : session->shots) {
     const auto file = session->path_of(shot).lexically_normal();
     if (!file.string().starts_with(folder.string())) std::abort();
-    if (!(shot.exposure_us > 0 && shot.led >= 0)) std::abort();
+    const bool is_timed = shot.exposure_us > 0 || (!session->is_of_rig() && shot.exposure_us == 0);
+    if (!is_timed || shot.led < 0) std::abort();
   }
+  if (const auto& reading = session->photographs; reading && !(reading->ambient >= 0)) std::abort();
   const auto written = weft::write_session(*session);
   if (!written || !weft::read_session(folder)) std::abort();
   return 0;
