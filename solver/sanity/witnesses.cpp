@@ -17,8 +17,8 @@ namespace {
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewestBlocks = 50;
-constexpr double kMostReadings = 2e5;    // that one witness looks at
-constexpr double kMostOfGains = 5e4;     // that each round of gains_of() looks at
+constexpr double kMostReadings = 1e5;    // that one witness looks at
+constexpr double kMostOfGains = 3e4;     // that each round of gains_of() looks at
 constexpr double kWorstCondition = 2e4;  // of the lights' normal equations, by Frobenius' norm
 
 using Unknowns = Eigen::Matrix<double, 4, 1>;
