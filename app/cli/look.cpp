@@ -87,10 +87,7 @@ Result<std::vector<fs::path>> pictures_of(const fs::path& folder) {
   for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
     const fs::path& file = entry->path();
     const std::string name = file.filename().string();
-    std::string ending = small_letters(file.extension().string());
-    ending.erase(0, 1);  // the point
-    const bool is_named_so =
-        is_linear_image(file) || capture::is_raw_ending(ending) || capture::is_unread_raw_ending(ending);
+    const bool is_named_so = is_linear_image(file) || capture::is_raw_name(file);
     std::error_code ignored;
     if (is_named_so && !name.starts_with('.') && !entry->is_directory(ignored)) files.push_back(file);
   }

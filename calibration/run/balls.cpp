@@ -30,11 +30,6 @@ constexpr const char* kPictureName = "balls.png";
 constexpr double kMaskMargin = 1.05;  // of the radius: an edge is blurred, and throws light about it
 constexpr double kNearLamps_deg = 0.5;
 
-bool is_raw_name(const fs::path& file) {
-  const std::string ending = small_letters(file.extension().string());
-  return ending.size() > 1 && capture::is_raw_ending(ending.substr(1));
-}
-
 /// Raws, where there are any: what lies beside them shows the same.
 Result<std::vector<fs::path>> pictures_in(const fs::path& folder) {
   std::vector<fs::path> files, raws;
@@ -43,7 +38,7 @@ Result<std::vector<fs::path>> pictures_in(const fs::path& folder) {
     const fs::path& file = entry->path();
     const std::string name = file.filename().string();
     if (name.starts_with('.') || name == kPictureName || solve::is_mask_name(file)) continue;
-    if (is_raw_name(file)) raws.push_back(file);
+    if (capture::is_raw_name(file)) raws.push_back(file);
     if (is_linear_image(file)) files.push_back(file);
   }
   if (failed) return cannot_read(folder, failed.value());

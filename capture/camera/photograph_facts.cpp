@@ -18,6 +18,7 @@
 
 #include "core/base/files.h"
 #include "core/base/number.h"
+#include "core/base/text.h"
 
 namespace weft::capture {
 namespace {
@@ -262,6 +263,13 @@ bool is_raw_ending(const std::string& ending) {
 
 bool is_unread_raw_ending(const std::string& ending) {
   return std::ranges::any_of(kUnreadRaws, [&](const auto& raw) { return raw.ending == ending; });
+}
+
+bool is_raw_name(const std::filesystem::path& file) {
+  const std::string ending = small_letters(file.extension().string());
+  if (ending.empty()) return false;
+  const std::string told = ending == ".nrw" ? "nef" : ending.substr(1);
+  return is_raw_ending(told) || is_unread_raw_ending(told);
 }
 
 PhotographFacts photograph_facts(const ReadAt& read_at) {

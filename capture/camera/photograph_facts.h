@@ -34,6 +34,9 @@ struct PhotographFacts {
 /// Whether this ending is that of a raw file whose header is read.
 bool is_raw_ending(const std::string& ending);
 
+/// Whether a file is a raw by its name, IMG_1.CR3, whether or not its header is read.
+bool is_raw_name(const std::filesystem::path& file);
+
 /// Whether this ending is that of a raw file whose header is not read.
 bool is_unread_raw_ending(const std::string& ending);
 

@@ -38,11 +38,11 @@ void describe(Fields& fields, PhotoReading& r) {
 }
 
 PhotoReading said_after(PhotoReading said, const PhotoReading& before) {
-  const PhotoReading custom;
-  if (said.transfer == custom.transfer) said.transfer = before.transfer;
-  if (said.orientation == custom.orientation) said.orientation = before.orientation;
-  if (said.flip == custom.flip) said.flip = before.flip;
-  if (said.ambient == custom.ambient) said.ambient = before.ambient;
+  const PhotoReading unsaid;
+  if (said.transfer == unsaid.transfer) said.transfer = before.transfer;
+  if (said.orientation == unsaid.orientation) said.orientation = before.orientation;
+  if (said.flip == unsaid.flip) said.flip = before.flip;
+  if (said.ambient == unsaid.ambient) said.ambient = before.ambient;
   if (!said.mm_per_pixel) said.mm_per_pixel = before.mm_per_pixel;
   if (!said.fov_deg) said.fov_deg = before.fov_deg;
   return said;

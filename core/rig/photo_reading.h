@@ -45,7 +45,7 @@ struct PhotoReading {
 };
 void describe(Fields& fields, PhotoReading& reading);
 
-/// `said`, and of what it leaves as it is by custom what was said `before`.
+/// `said`, and what it does not say as it was said `before`.
 PhotoReading said_after(PhotoReading said, const PhotoReading& before);
 
 }  // namespace weft

@@ -24,10 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string stored_name(std::string name, const fs::path& source) {
-  std::string ending = source.extension().string();
-  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return fmt::format("{}/{}{}", solve::kPhotographsFolder, name, ending);
+std::string stored_name(const std::string& name, const fs::path& source) {
+  return fmt::format("{}/{}{}", solve::kPhotographsFolder, name, small_letters(source.extension().string()));
 }
 
 Result<void> decode(const solve::SolvePlan& photos) {

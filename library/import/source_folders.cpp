@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "capture/camera/photograph_facts.h"
 #include "core/base/files.h"
 #include "core/base/text.h"
 #include "core/image_io/linear_image.h"
@@ -115,13 +116,13 @@ class Walk {
     } else if (file.filename() == "import.toml") {
       found_.descriptions.push_back(file);
     } else if (has_lights) {
-      if (is_raw_name(file) || is_linear_image(file)) found_.beside_lights.push_back(file);
+      if (capture::is_raw_name(file) || is_linear_image(file)) found_.beside_lights.push_back(file);
     } else if (ending == ".json") {
       found_.descriptions.push_back(file);
     } else if (is_jpeg(file)) {
       found_.left_over.push_back({file, "a JPEG went through the camera's tone curve"});
-    } else if (is_raw_name(file) || is_linear_image(file)) {
-      found_.frames.push_back({file, root_, !is_raw_name(file)});
+    } else if (capture::is_raw_name(file) || is_linear_image(file)) {
+      found_.frames.push_back({file, root_, !capture::is_raw_name(file)});
     } else {
       found_.left_over.push_back({file, "it is no raw, TIFF or EXR file"});
     }
@@ -133,12 +134,6 @@ class Walk {
 };
 
 }  // namespace
-
-bool is_raw_name(const fs::path& file) {
-  static constexpr std::array<std::string_view, 11> kRaw = {".nef", ".nrw", ".cr2", ".cr3", ".crw", ".dng",
-                                                            ".arw", ".orf", ".pef", ".rw2", ".raf"};
-  return std::ranges::find(kRaw, ending_of(file)) != kRaw.end();
-}
 
 Result<SourceFolders> look_into(const std::vector<fs::path>& folders) {
   SourceFolders found;

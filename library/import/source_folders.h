@@ -36,9 +36,6 @@ struct SourceFolders {
   std::vector<LeftOver> left_over;                  ///< files that are none of these, sessions of weft
 };
 
-/// Whether this ending (".NEF") is that of a raw file.
-bool is_raw_name(const std::filesystem::path& file);
-
 /// Looks into the folders and those below them. Hidden files and links to folders are passed over; files of
 /// photographs under distant lights are no frames. kNoInput for a folder that cannot be listed.
 Result<SourceFolders> look_into(const std::vector<std::filesystem::path>& folders);

@@ -285,11 +285,6 @@ std::string pattern_of(const fs::path& file) {
   return pattern;
 }
 
-bool is_raw(const fs::path& file) {
-  const std::string ending = small_letters(file.extension().string());
-  return !ending.empty() && capture::is_raw_ending(ending.substr(1));
-}
-
 // The photographs of a folder, as people count: of several kinds of names that which has `count`. Raws where
 // nothing is developed.
 Result<std::vector<fs::path>> photographs_of(const fs::path& folder, std::size_t count,
@@ -298,7 +293,7 @@ Result<std::vector<fs::path>> photographs_of(const fs::path& folder, std::size_t
   std::vector<fs::path> all, raws;
   for (const fs::path& file : folders.files_of(folder)) {
     if (file.filename().string().starts_with('.')) continue;
-    if (is_raw(file)) raws.push_back(file);
+    if (capture::is_raw_name(file)) raws.push_back(file);
     if (is_linear_image(file) && !is_mask_name(file) && !is_dark_name(file)) all.push_back(file);
   }
   if (all.empty()) all = std::move(raws);

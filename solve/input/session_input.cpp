@@ -215,7 +215,7 @@ Result<SolvePlan> plan_session(const SessionOptions& options) {
   Result<SolvePlan> plan = begin_plan(options);
   if (!plan) return plan;
   if (!plan->session.is_of_rig()) return plan_of_photographs(options, *std::move(plan));
-  if (options.reading != PhotoReading()) return reads_raws(plan->where);
+  if (options.forgets_reading || options.reading != PhotoReading()) return reads_raws(plan->where);
   Result<Calibration> calibration = calibration_of(plan->session, options.calibration);
   if (!calibration) return std::move(calibration).error();
   plan->calibration = std::move(*calibration);

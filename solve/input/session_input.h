@@ -20,6 +20,7 @@ struct SessionOptions {
   std::vector<int> leds;              ///< empty: all that were lit
   Json accepted_moved = {};           ///< beside the session's own word (docs/formats.md)
   PhotoReading reading = {};          ///< of photographs that no rig took, over what the session says
+  bool forgets_reading = false;       ///< what the session says of them counts no more
   Clipped clipped = Clipped::kMark;   ///< what becomes of their full scale, as the method has it
 };
 

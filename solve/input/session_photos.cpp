@@ -14,7 +14,7 @@ PhotoOptions photos_of(const SessionOptions& options, const std::vector<Shot>& l
   PhotoOptions photos;
   photos.folder = session.folder / kPhotographsFolder;
   photos.light_file = photos.folder / kLightsFile;
-  photos.reading = said_after(options.reading, *session.photographs);
+  photos.reading = reading_of(options, session);
   photos.clipped = options.clipped;
   for (const Shot& shot : lit) photos.lights.push_back(shot.led);
   if (const Shot* dark = session.dark()) photos.dark = session.path_of(*dark);
@@ -35,6 +35,11 @@ Result<void> check_photograph(const Session& session, const Shot& shot, const fs
 }
 
 }  // namespace
+
+PhotoReading reading_of(const SessionOptions& options, const Session& session) {
+  return options.forgets_reading ? options.reading
+                                 : said_after(options.reading, session.photographs.value_or(PhotoReading()));
+}
 
 Result<SolvePlan> plan_photographs(const SessionOptions& options, const std::vector<Shot>& lit,
                                    SolvePlan begun) {

@@ -14,6 +14,9 @@ namespace weft::solve {
 inline constexpr const char* kPhotographsFolder = "photographs";
 inline constexpr const char* kLightsFile = "lights.lp";
 
+/// How such photographs are read: as the options say, and where they do not as the session says.
+PhotoReading reading_of(const SessionOptions& options, const Session& session);
+
 /// The plan of a session of such photographs: `begun` has the session, `lit` the shots to solve from. kUsage
 /// for a calibration that is named; kBadData for bytes that are not those that were imported; errors of
 /// plan_photos().

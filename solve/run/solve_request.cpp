@@ -168,6 +168,9 @@ void describe(Fields& fields, SolveRequest& r) {
   describe_level(fields, r);
   describe_readings(fields, r);
   describe(fields, r.session.reading);
+  fields.value({"unsay", "Of imported photographs: forget how they were read before"},
+               r.session.forgets_reading);
+  fields.need("unsay", "session");
   fields.value(
       {.name = "dark",
        .says = "The same photograph with all lamps off, which is taken from the others; else dark.* or "

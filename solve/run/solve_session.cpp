@@ -23,6 +23,7 @@
 #include "solve/files/map_files.h"
 #include "solve/files/pictures.h"
 #include "solve/input/load.h"
+#include "solve/input/session_photos.h"
 #include "solve/levels/frame.h"
 #include "solve/levels/shifts.h"
 #include "solve/levels/stages.h"
@@ -487,8 +488,9 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
     if (!second) return std::move(second).error();
   }
   Result<SolveReport> report = solve(*method, *plan, options, context);
-  if (!report || plan->is_of_rig || input.reading == PhotoReading()) return report;
-  if (Result<void> kept = keep_reading(input.folder, input.reading); !kept) return std::move(kept).error();
+  if (!report || plan->is_of_rig) return report;
+  const PhotoReading reading = reading_of(input, plan->session);
+  if (Result<void> kept = keep_reading(input.folder, reading); !kept) return std::move(kept).error();
   return report;
 }
 

@@ -116,13 +116,14 @@ Result<void> keep_in_solve(const fs::path& folder, double mm) {
 
 }  // namespace
 
-Result<void> keep_reading(const fs::path& folder, const PhotoReading& said) {
-  const Result<Descriptor> lock = lock_session(folder);
-  if (!lock) return lock.error();
+Result<void> keep_reading(const fs::path& folder, const PhotoReading& reading) {
   Result<Session> session = read_session(folder);
   if (!session) return std::move(session).error();
-  const PhotoReading reading = said_after(said, session->photographs.value_or(PhotoReading()));
-  if (session->is_of_rig() || reading == *session->photographs) return {};
+  if (session->photographs == reading) return {};
+  const Result<Descriptor> lock = lock_session(folder);
+  if (!lock) return lock.error();
+  session = read_session(folder);
+  if (!session) return std::move(session).error();
   session->photographs = reading;
   return write_session(*session);
 }
@@ -135,7 +136,10 @@ Result<void> keep_pixel(const fs::path& folder, std::optional<double>& mm_per_pi
   if (!pixel) return {};
   const double said = *std::exchange(mm_per_pixel, std::nullopt);
   if (pixel->is_known && pixel->mm == said) return {};
-  return is_lone_solve(*session) ? keep_in_solve(folder, said) : keep_reading(folder, {.mm_per_pixel = said});
+  if (is_lone_solve(*session)) return keep_in_solve(folder, said);
+  PhotoReading reading = *session->photographs;
+  reading.mm_per_pixel = said;
+  return keep_reading(folder, reading);
 }
 
 std::string size_words(const SourceFacts& source) {

@@ -39,9 +39,9 @@ std::optional<PhotographedPixel> photographed_pixel(const Session& session);
 /// Errors of read_json(), write_json() and lock_session().
 Result<void> keep_pixel(const std::filesystem::path& folder, std::optional<double>& mm_per_pixel);
 
-/// What a person says of photographs that no rig took is kept in their session.json. Errors of lock_session()
-/// and read_session().
-Result<void> keep_reading(const std::filesystem::path& folder, const PhotoReading& said);
+/// How photographs that no rig took are read from now on, in their session.json. Errors of lock_session(),
+/// read_session() and write_session().
+Result<void> keep_reading(const std::filesystem::path& folder, const PhotoReading& reading);
 
 /// "the size is not known: 0.1 mm a pixel is assumed; --mm-per-pixel says it"; empty where it is known.
 std::string size_words(const SourceFacts& source);

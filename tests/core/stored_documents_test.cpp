@@ -79,6 +79,7 @@ constexpr char kCalibrationReport[] = "weft.calibration-report";
 constexpr char kCalibrationCheck[] = "weft.calibration-check";
 constexpr char kSet[] = "weft.set";
 constexpr char kReflectance[] = "weft.reflectance";
+constexpr char kPhotographs[] = "weft.photographs";
 constexpr char kBatchReport[] = "weft.batch-report";
 
 // Formats of lines, whose stored files tests/library/batch/stored_lines_test.cpp reads.
@@ -105,6 +106,7 @@ const std::vector<Format> kFormats = {{"weft.session", session_again},
                                       {kCalibrationCheck, document_again<kCalibrationCheck>},
                                       {kSet, document_again<kSet>},
                                       {kReflectance, document_again<kReflectance>},
+                                      {kPhotographs, document_again<kPhotographs>},
                                       {kBatchReport, document_again<kBatchReport>}};
 
 struct Stored {

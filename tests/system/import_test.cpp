@@ -19,6 +19,7 @@
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
 #include "simulator/camera/dng_writer.h"
+#include "tests/core/places.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 
@@ -479,8 +480,20 @@ TEST_F(Import, KeepsWhatAPersonSaysOfPhotographsAndSolvesThemSoAgain) {
   EXPECT_EQ(solve({"--flip", "x"}).exit_code, 0);
   EXPECT_EQ(session("buddha").photographs->flip, LightFlip::kX);
   EXPECT_EQ(state_of_solve(), "fresh") << "that is the current one";
+  EXPECT_EQ(solve({"--unsay", "--mm-per-pixel", "0.1"}).exit_code, 0);
+  EXPECT_EQ(session("buddha").photographs, (PhotoReading{.mm_per_pixel = 0.1}))
+      << "the lights lie as they did";
+  EXPECT_EQ(state_of_solve(), "fresh");
   EXPECT_THAT(solve({"--calibration", calibration_.string()}).error, HasSubstr("have no calibration"));
   expect_refusal(work_, {"solve", made.string(), "--dark", "x.png"}, 64, {"--dark"});
+}
+
+TEST_F(Import, MakesASessionOfAFolderThatEarlierImportsMade) {
+  PhotographSample().write(source_ / "buddha.photos");
+  fs::copy_file(source_folder() / "testdata/schemas/weft.photographs-1/photographs.json",
+                source_ / "buddha.photos/photographs.json");
+  EXPECT_EQ(imported()["imported"], 1);
+  EXPECT_EQ(session("buddha.photos").shots.size(), 6U);
 }
 
 TEST_F(Import, RefusesPhotographsThatAreNotThoseThatWereImported) {

@@ -7363,6 +7363,11 @@ export interface components {
             /** @description Light that is in all photographs, a share of full scale */
             ambient?: number;
             /**
+             * @description Of imported photographs: forget how they were read before
+             * @default false
+             */
+            unsay?: boolean;
+            /**
              * @description Of EXR files: none, zip, piz
              * @default none
              * @enum {string}
