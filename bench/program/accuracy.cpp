@@ -15,6 +15,7 @@
 #include "bench/accuracy/coverage.h"
 #include "bench/accuracy/photos.h"
 #include "bench/program/studies.h"
+#include "bench/sanity/frame_faults.h"
 #include "bench/sanity/sanity.h"
 
 namespace weft::bench {
@@ -159,6 +160,18 @@ app::Run add_sanity(app::Options& options) {
   return run_of(choice);
 }
 
+app::Run add_frames(app::Options& options) {
+  const auto a = std::make_shared<FrameFaultOptions>();
+  const Choice choice = by_flag(
+      options,
+      {{"frames", "", [a](const StudyOptions& o) { return frame_faults_table(*a, o); }, {.runs = 200}}});
+  options.add("--fault", &a->fault, "One fault alone, such as \"rows off by one\"").one_of(frame_faults());
+  options.add("--draws", &choice->options.runs, "Of a fault; 0 is 200").in_range(0, 100000);
+  options.add("--seed", &choice->options.seed, "Of the first draw").shows_default();
+  options.add_flag("--list", &a->lists, "What is said of each draw");
+  return run_of(choice);
+}
+
 }  // namespace
 
 app::Verb accuracy_verb() {
@@ -172,6 +185,10 @@ app::Verb explain_verb() {
 app::Verb sanity_verb() {
   return {"sanity", "What is said of photographs whose lights or values are not what they are taken for",
           add_sanity};
+}
+
+app::Verb frames_verb() {
+  return {"frames", "What is said of frames of a rig, some of which lie", add_frames};
 }
 
 app::Verb photos_verb() {

@@ -51,7 +51,7 @@ void describe(Fields& fields, ConditionedLed& l) {
 
 void describe(Fields& fields, UnusedLed& l) {
   fields.value({"led", "Its number", {}, kMustSay}, l.led);
-  fields.value({"why", "saturated or not lit"}, l.why);
+  fields.value({"why", "saturated, not lit, fits nothing or moved"}, l.why);
 }
 
 void describe(Fields& fields, ClothGain& g) {
@@ -69,6 +69,23 @@ void describe(Fields& fields, ClothGains& g) {
   fields.value({"left_out_sigma", "Standard deviation of it", {}, kOrNull}, g.left_out_sigma);
 }
 
+void describe(Fields& fields, FrameFitFacts& f) {
+  fields.value({"led", "Its number", {}, kMustSay}, f.led);
+  fields.value({"missed", "By what the other frames predict, a share of the brightness", {}, kOrNull},
+               f.missed);
+  fields.value({"sigma", "That noise alone would give", {}, kOrNull}, f.sigma);
+  fields.value({"rows", "By which its light rises and falls along rows, a share"}, f.rows);
+  fields.value({"part", "Pixels that do not fit: x0, y0, x1, y1", {}, kUnlessEmpty}, f.part);
+  fields.value({"costs_deg", "By which it would turn the normals, degrees"}, f.costs_deg);
+}
+
+void describe(Fields& fields, RoomLightFacts& r) {
+  fields.value({"share", "Of the mean reading; below 0 in the dark shot alone", {}, kMustSay}, r.share);
+  fields.value({"sigma", "Standard deviation of it"}, r.sigma);
+  fields.value({"costs_deg", "By which it would turn the normals, degrees"}, r.costs_deg);
+  fields.value({"costs_albedo", "By which it would make albedo too bright, a share"}, r.costs_albedo);
+}
+
 void describe(Fields& fields, ConditionFacts& c) {
   fields.value({"hot_photosites", "That were replaced, of raw frames", kNotNegative}, c.hot_photosites);
   fields.value({"veil", "Share of the light that was taken off"}, c.veil);
@@ -77,6 +94,9 @@ void describe(Fields& fields, ConditionFacts& c) {
   fields.list({"drift", "How bright LEDs were, by patches or repeats", {}, kUnlessEmpty}, c.drift);
   fields.object({"cloth_gains", "How bright LEDs were, by what the cloth tells", {}, kUnlessEmpty},
                 c.cloth_gains);
+  fields.list({"frames", "How each frame fits the others", {}, kUnlessEmpty}, c.frames);
+  fields.value({"rows_period", "Rows from one crest of flickering light to the next"}, c.rows_period);
+  fields.object({"room", "Light of frames or dark shot alone", {}, kUnlessEmpty}, c.room);
 }
 
 void describe(Fields& fields, AngleMiddle& a) {

@@ -63,7 +63,7 @@ struct ConditionedLed {
 };
 struct UnusedLed {
   int led = 0;
-  std::string why;  ///< "saturated", "not lit" or "moved"
+  std::string why;  ///< "saturated", "not lit", "fits nothing" or "moved"
 };
 void describe(Fields& fields, UnusedLed& led);
 struct ClothGain {
@@ -76,6 +76,19 @@ struct ClothGains {
   double misfit_before = 0, misfit_after = 0;    ///< of the readings, a share
   double left_out_gain = 0, left_out_sigma = 0;  ///< by which left-out light is predicted better
 };
+/// How one frame fits the others.
+struct FrameFitFacts {
+  int led = 0;
+  double missed = 0, sigma = 0;     ///< of what the others predict, and by noise: shares of the brightness
+  std::optional<double> rows;       ///< by which its light rises and falls along rows, a share
+  std::vector<int> part;            ///< of the frame that does not fit: x0, y0, x1, y1; empty: none
+  std::optional<double> costs_deg;  ///< by which it turns the normals, left alone
+};
+/// Light that frames have and their dark shot lacks, or the other way round.
+struct RoomLightFacts {
+  double share = 0, sigma = 0;  ///< of the mean reading
+  double costs_deg = 0, costs_albedo = 0;
+};
 /// What was found in the frames and corrected (docs/conditions.md).
 struct ConditionFacts {
   std::optional<int> hot_photosites;  ///< of raw frames
@@ -84,6 +97,9 @@ struct ConditionFacts {
   std::vector<UnusedLed> left_out;
   std::vector<ConditionedLed> drift;
   std::optional<ClothGains> cloth_gains;
+  std::vector<FrameFitFacts> frames;
+  std::optional<double> rows_period;  ///< rows of pixels
+  std::optional<RoomLightFacts> room;
 };
 void describe(Fields& fields, ConditionFacts& conditions);
 

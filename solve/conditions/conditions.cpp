@@ -9,6 +9,8 @@
 #include "solve/conditions/full_scale.h"
 #include "solve/conditions/led_gains.h"
 #include "solve/conditions/lens_glare.h"
+#include "solve/conditions/questioned_dark.h"
+#include "solve/conditions/questioned_frames.h"
 #include "solve/conditions/questioned_lights.h"
 #include "solve/conditions/tilted_cloth.h"
 #include "solve/conditions/useless_lights.h"
@@ -17,8 +19,8 @@ namespace weft::solve {
 namespace {
 
 // In the order in which they must be met: each is found in photographs that those before it have put right.
-constexpr std::array kConditions = {find_full_scale, tell_veil,    mend_photosites,
-                                    question_lights, add_brackets, drop_useless_lights,
+constexpr std::array kConditions = {find_full_scale, tell_veil,    mend_photosites,     question_dark,
+                                    question_lights, add_brackets, drop_useless_lights, question_frames,
                                     follow_drift,    lay_level,    follow_cloth};
 
 }  // namespace

@@ -25,6 +25,17 @@ RawFrame cut_frame(const RawFrame& frame, Rect area) {
   return {cut_image(frame.counts, area), frame.cfa, frame.black, frame.white, frame.shot};
 }
 
+FrameMend cut_mend(const FrameMend& mend, Rect area) {
+  FrameMend part;
+  if (!mend.row_gain.empty())
+    part.row_gain.assign(mend.row_gain.begin() + area.y0, mend.row_gain.begin() + area.y1);
+  if (mend.missing) {
+    const Rect& missing = *mend.missing;
+    part.missing = {missing.x0 - area.x0, missing.y0 - area.y0, missing.x1 - area.x0, missing.y1 - area.y0};
+  }
+  return part;
+}
+
 Frames cut_frames(const Developed& whole, Rect area) {
   Developed part;
   for (const Image<float>& image : whole.rgb) part.rgb.push_back(cut_image(image, area));
@@ -38,6 +49,7 @@ Frames cut_frames(const Mosaics& whole, Rect area) {
   if (whole.dark) dark = cut_frame(*whole.dark, area);
   Mosaics part(std::move(frames), std::move(dark), whole.response, whole.exposure);
   part.noise = whole.noise;
+  for (const FrameMend& mend : whole.mends) part.mends.push_back(cut_mend(mend, area));
   return part;
 }
 

@@ -15,6 +15,21 @@ namespace {
 // So much of photographs on disk lies in memory, however many there are.
 constexpr std::size_t kMostShown = std::size_t{256} << 20;
 constexpr std::size_t kMappedAround = std::size_t{64} << 10;  // what Linux maps beside a page that is read
+
+void mend(const FrameMend& mend, Rect part, View<float> out) {
+  for (int y = part.y0; y < part.y1; ++y) {
+    float* row = out.row(y - part.y0);
+    if (!mend.row_gain.empty()) {
+      const float scale = 1 / mend.row_gain[static_cast<std::size_t>(y)];
+      for (int x = 0; x < part.width(); ++x) row[x] *= scale;
+    }
+    if (!mend.missing || y < mend.missing->y0 || y >= mend.missing->y1) continue;
+    const int from = std::max(part.x0, mend.missing->x0), to = std::min(part.x1, mend.missing->x1);
+    if (from < to)
+      std::fill(row + (from - part.x0), row + (to - part.x0), std::numeric_limits<float>::quiet_NaN());
+  }
+}
+
 }  // namespace
 
 std::vector<View<const float>> Developed::readings(std::size_t k, Rect part, View<float> /*scratch*/) const {
@@ -61,7 +76,21 @@ Mosaics Mosaics::alike(std::vector<RawFrame> others) const {
   return {std::move(others), *this};
 }
 
+void Mosaics::set_dark(RawFrame dark_shot) {
+  dark = std::move(dark_shot);
+  radiometry = Radiometry(frames.front(), &*dark, response, exposure);
+  noise = radiometry.noise();
+  measure_veils();
+}
+
+void Mosaics::lend_dark(const Mosaics& like) {
+  radiometry = like.radiometry;
+  noise = radiometry.noise();
+  measure_veils();
+}
+
 void Mosaics::measure_veils() {
+  veils.clear();
   if (!response.veil) return;
   for (const RawFrame& frame : frames) {
     veils.emplace_back(*response.veil, frame.counts.size(), radiometry.cfa(),
@@ -72,6 +101,7 @@ void Mosaics::measure_veils() {
 std::vector<View<const float>> Mosaics::readings(std::size_t k, Rect part, View<float> scratch) const {
   const View<float> out = scratch.crop({0, 0, part.width(), part.height()});
   radiometry.read(frames[k].counts.plane(), part, out);
+  if (!mends.empty()) mend(mends[k], part, out);
   if (!brackets.empty() && !brackets[k].empty()) add_brackets(k, part, out);
   if (!veils.empty()) veils[k].take_off(part, out);
   for (int y = part.y0; inside && y < part.y1; ++y) {
@@ -104,6 +134,21 @@ void Mosaics::erase(std::size_t k) {
   frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(k));
   if (!brackets.empty()) brackets.erase(brackets.begin() + static_cast<std::ptrdiff_t>(k));
   if (!veils.empty()) veils.erase(veils.begin() + static_cast<std::ptrdiff_t>(k));
+  if (!mends.empty()) mends.erase(mends.begin() + static_cast<std::ptrdiff_t>(k));
+}
+
+void mend_frames(std::vector<FrameMend> mends, Frames& frames) {
+  if (auto* mosaics = std::get_if<Mosaics>(&frames)) {
+    mosaics->mends = std::move(mends);
+    return;
+  }
+  auto& developed = std::get<Developed>(frames);
+  for (std::size_t k = 0; k < mends.size(); ++k) {
+    const Size size = developed.rgb[k].size();
+    if (mends[k].row_gain.empty() && !mends[k].missing) continue;
+    for (int c = 0; c < 3; ++c) mend(mends[k], {0, 0, size.width, size.height}, developed.rgb[k].plane(c));
+    developed.page_out(k);
+  }
 }
 
 std::vector<View<const float>> readings_of(const Frames& frames, std::size_t k, Rect part,

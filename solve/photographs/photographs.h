@@ -64,6 +64,12 @@ struct Developed {
   std::unique_ptr<std::atomic<std::size_t>> shown_ = std::make_unique<std::atomic<std::size_t>>(0);
 };
 
+/// What is done to the readings of one frame that does not fit the others.
+struct FrameMend {
+  std::vector<float> row_gain;  ///< that each row is divided by; empty: none is
+  std::optional<Rect> missing;  ///< has no readings
+};
+
 /// A mosaic once more at another exposure.
 struct Bracket {
   RawFrame frame;
@@ -77,6 +83,10 @@ struct Mosaics {
           const Response& response_of_camera, Radiometry::Exposure exposure_of_all);
   /// Other frames of the same camera and exposure. They lend the dark shot of these, which must outlive them.
   Mosaics alike(std::vector<RawFrame> others) const;
+  /// Takes another dark shot off these.
+  void set_dark(RawFrame dark_shot);
+  /// Takes the dark shot of `like` off these, which must outlive them.
+  void lend_dark(const Mosaics& like);
 
   std::vector<RawFrame> frames;
   std::optional<RawFrame> dark;
@@ -87,6 +97,7 @@ struct Mosaics {
   std::vector<std::vector<Bracket>> brackets;  ///< of each frame; empty where there are none at all
   std::vector<Photosite> replaced;             ///< sorted: their counts are what their neighbours say
   std::vector<VeilOverFrame> veils;            ///< of each frame, taken off; empty where the lens has none
+  std::vector<FrameMend> mends;                ///< of each frame; empty where none needs any
   std::optional<Image<std::uint8_t>> inside;   ///< 1 where the cloth is; none: everywhere
 
   std::size_t count() const { return frames.size(); }
@@ -103,6 +114,9 @@ struct Mosaics {
 
 using Frames = std::variant<Developed, Mosaics>;
 
+/// Does what mends say to frames, each by its own.
+void mend_frames(std::vector<FrameMend> mends, Frames& frames);
+
 /// Readings of frame k over `part`, which begins on an even column: a view a plane, (0, 0) at the part's
 /// corner. Those of a mosaic, with its brackets, are made in `scratch`, which is at least as large as the
 /// part; developed ones are shown where they are.
@@ -113,6 +127,7 @@ std::vector<View<const float>> readings_of(const Frames& frames, std::size_t k, 
 struct Conditions {
   ConditionFacts facts;               ///< as solve.json has them
   std::vector<std::string> warnings;  ///< a sentence each
+  std::vector<Verdict> of_frames;     ///< frames and dark shots that lie, and what was done
   std::vector<Verdict> doubts;        ///< whether lights and values are what they are taken for
   std::vector<std::string> assumed;   ///< of photographs, as of SolvePlan
 };

@@ -162,8 +162,33 @@ report::Section registration(const SolveReportFacts& report) {
 
 report::Section conditions(const SolveReportFacts& report) {
   report::Table table;
-  if (report.conditions) report::add_rows(table, object_of(*report.conditions));
+  if (report.conditions) {
+    ConditionFacts facts = *report.conditions;
+    facts.frames.clear();
+    report::add_rows(table, object_of(facts));
+  }
   return {.title = "Conditions", .table = std::move(table), .is_half = true};
+}
+
+report::Section frames(const SolveReportFacts& report) {
+  if (!report.conditions || report.conditions->frames.empty()) return {};
+  report::Table table = {{"", "missed", "by noise", "along rows", "part that is not read", "would cost"}};
+  const auto percent = [](std::optional<double> share) {
+    return share ? fmt::format("{:.2f} %", 100 * *share) : "";
+  };
+  for (const FrameFitFacts& frame : report.conditions->frames) {
+    const std::vector<int>& part = frame.part;
+    table.rows.push_back(
+        {fmt::format("{} {}", light_noun(report), frame.led), percent(frame.missed),
+         frame.sigma > 0 ? percent(frame.sigma) : "", percent(frame.rows),
+         part.size() == 4 ? fmt::format("{} to {}, {} to {}", part[0], part[2], part[1], part[3]) : "",
+         frame.costs_deg ? fmt::format("{:.2g}\u00b0", *frame.costs_deg) : ""});
+  }
+  return {.title = "Whether each frame fits the others",
+          .table = std::move(table),
+          .note =
+              "Missed: by what the others predict, the median over the frame, of the brightness, the frame's "
+              "own gain taken off."};
 }
 
 report::Section gates(const SolveReportFacts& report) {
@@ -199,8 +224,9 @@ std::string report_page(const SolveReportFacts& report, const std::vector<report
                    states(report),        budget(report),
                    sigma_map(report),     reflectance_section(report.reflectance),
                    light_table(report),   left_out_section(report.check, light_noun(report)),
-                   gates(report),         time(report),
-                   conditions(report),    registration(report)};
+                   frames(report),        gates(report),
+                   time(report),          conditions(report),
+                   registration(report)};
   return html_of(page);
 }
 

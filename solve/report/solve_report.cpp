@@ -456,6 +456,7 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
                               "that solve: weft library tag SESSION --set current_solve=ID"
                             : "lay the cloth flat and photograph again, or solve with --quality robust"});
   }
+  verdicts.insert(verdicts.begin(), photographs.of_frames.begin(), photographs.of_frames.end());
   for (const std::string& warning : photographs.warnings) verdicts.push_back({"CONDITIONS", warning, ""});
   return verdicts;
 }

@@ -83,6 +83,7 @@ struct PhotographsSummary {
   double glossy_share = 0;               ///< of the blocks, solved with a lobe that was measured
   double outshining = 0;                 ///< share of pixels, solver/diagnosis/highlights.h
   std::vector<std::string> warnings;     ///< a sentence each, said when the photographs were read
+  std::vector<Verdict> of_frames;        ///< frames and dark shots that lie
   std::vector<Verdict> doubts;           ///< whether lights and values are what they are taken for
   SessionShifts shifts;                  ///< of the photographs as they were read
   std::optional<MovedShots> far_shifts;  ///< where they were looked for

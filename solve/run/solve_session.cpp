@@ -156,7 +156,7 @@ class Finish {
 struct Prepared {
   Photographs photographs;
   std::vector<std::string> warnings;
-  std::vector<Verdict> doubts;
+  std::vector<Verdict> of_frames, doubts;
   Fullness fullness;         // of the photographs as they were read
   SessionShifts shifts;      // of the photographs too
   std::vector<int> numbers;  // of photographs without a rig, by light
@@ -229,6 +229,7 @@ class Run {
     if (!options_.deblur) photographs.spread.reset();
     facts_.conditions = photographs.conditions.facts;
     prepared.warnings = photographs.conditions.warnings;
+    prepared.of_frames = photographs.conditions.of_frames;
     prepared.doubts = photographs.conditions.doubts;
     std::ranges::copy(photographs.conditions.assumed, std::back_inserter(facts_.assumed));
     prepared.fullness = fullness_of(photographs);
@@ -337,6 +338,7 @@ class Run {
     if (frame.reference) std::ranges::move(warnings_of(*frame.reference), std::back_inserter(warnings));
     PhotographsSummary& summary = made.summary;
     summary = summarize_photographs(prepared.photographs, prepared.numbers, warnings, context_);
+    summary.of_frames = prepared.of_frames;
     summary.doubts = prepared.doubts;
     summary.session = plan_.session_name;
     summary.left_out = left_out(plan_.session);

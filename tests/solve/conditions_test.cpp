@@ -270,7 +270,7 @@ TEST(Conditions, ArePutRightAndToldInThePhotographs) {
 
   EXPECT_THAT(photographs.leds, ElementsAre(1, 2, 4, 5, 6, 7, 8, 10));
   EXPECT_THAT(photographs.mosaics()->replaced, ElementsAre(Photosite{10, 20}));
-  const auto& [facts, warnings, doubts, assumed] = photographs.conditions;
+  const auto& [facts, warnings, of_frames, doubts, assumed] = photographs.conditions;
   EXPECT_EQ(facts.hot_photosites, 1);
   EXPECT_FALSE(facts.veil);
   ASSERT_EQ(facts.left_out.size(), 2U);
@@ -286,6 +286,7 @@ TEST(Conditions, ArePutRightAndToldInThePhotographs) {
                   "LED 9 did not light the cloth: its frame looks like the dark shot; it was left out",
                   testing::HasSubstr("white patch 3 gives 0.4 times the light that most patches give under "
                                      "LED 8")));
+  EXPECT_TRUE(of_frames.empty());
   EXPECT_TRUE(doubts.empty());
   EXPECT_TRUE(assumed.empty());
 }

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/conditions/questioned_dark.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/base/percent.h"
+#include "core/base/statistics.h"
+#include "core/rig/radiometry.h"
+#include "solve/photographs/cell_noise.h"
+#include "solve/photographs/spread_cells.h"
+#include "solver/frame_fit/cell_fit.h"
+#include "solver/frame_fit/room_light.h"
+
+namespace weft::solve {
+namespace {
+
+// Of full scale, as in the scan: light in the dark shot that is spoken of.
+constexpr double kDarkWarns = 0.004;
+constexpr double kBrighter = 0.9;  // of the dark shot's sites, in the order of their light
+constexpr int kStep = 7;           // sites that are looked at; odd: of every colour
+
+using Cell = std::array<std::array<double, 2>, 2>;
+
+// Counts of no light by what the calibration measured, else by the file.
+Cell black_of(const Mosaics& mosaics) {
+  const RawFrame& frame = mosaics.frames.front();
+  Cell black;
+  double mean = 0;
+  for (std::size_t y = 0; y < 2; ++y) {
+    for (std::size_t x = 0; x < 2; ++x)
+      black[y][x] = static_cast<double>(frame.black[y][x]), mean += black[y][x] / 4;
+  }
+  if (!mosaics.response.black_counts) return black;
+  for (auto& row : black) {
+    for (double& level : row) level += *mosaics.response.black_counts - mean;
+  }
+  return black;
+}
+
+// How a dark shot follows the mean light of the frames, site by site: level + share * light.
+struct DarkLight {
+  double share = 0, sigma = 0;  // of their light
+  double bright = 0;            // its brighter tenth, of full scale above black
+};
+
+DarkLight light_of(const Mosaics& mosaics, const Cell& black) {
+  const RawFrame& dark = *mosaics.dark;
+  double n = 0, x_sum = 0, y_sum = 0, xx = 0, xy = 0, yy = 0;
+  std::vector<double> light;
+  for (int y = 0; y < dark.counts.height(); y += kStep) {
+    for (int x = y % 2; x < dark.counts.width(); x += kStep) {
+      const double level = black[static_cast<std::size_t>(y & 1)][static_cast<std::size_t>(x & 1)];
+      const double own = static_cast<double>(dark.counts(x, y)) - level;
+      light.push_back(own / (static_cast<double>(dark.white) - level));
+      if (dark.cfa.channel_at(x, y) != 1) continue;
+      double mean = 0;
+      for (const RawFrame& frame : mosaics.frames)
+        mean += (static_cast<double>(frame.counts(x, y)) - level) / static_cast<double>(mosaics.count());
+      ++n, x_sum += mean, y_sum += own, xx += mean * mean, xy += mean * own, yy += own * own;
+    }
+  }
+  DarkLight found;
+  found.bright = quantile(std::move(light), kBrighter);
+  const double spread = xx - x_sum * x_sum / n, both = xy - x_sum * y_sum / n, rest = yy - y_sum * y_sum / n;
+  if (!(spread > 0) || n < 10) return {0, 1, found.bright};
+  found.share = both / spread;
+  found.sigma = std::sqrt(std::max(0.0, rest - found.share * both) / (n - 2) / spread);
+  return found;
+}
+
+RawFrame empty_like(const RawFrame& frame) {
+  return {Image<std::uint16_t>(frame.counts.size()), frame.cfa, frame.black, frame.white, frame.shot};
+}
+
+// The dark shot with `share` of the frames' mean light more.
+RawFrame with_room(const Mosaics& mosaics, const Cell& black, double share, int threads) {
+  RawFrame dark = empty_like(mosaics.frames.front());
+  const RawFrame* before = mosaics.dark ? &*mosaics.dark : nullptr;
+  const double each = share / static_cast<double>(mosaics.count());
+  parallel_for(static_cast<std::size_t>(dark.counts.height()), threads, [&](std::size_t row, int) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < dark.counts.width(); ++x) {
+      const double from = before != nullptr ? static_cast<double>(before->counts(x, y))
+                                            : black[row & 1U][static_cast<std::size_t>(x & 1)];
+      double light = 0;
+      for (const RawFrame& frame : mosaics.frames) light += static_cast<double>(frame.counts(x, y)) - from;
+      constexpr double kMost = std::numeric_limits<std::uint16_t>::max();
+      dark.counts(x, y) =
+          static_cast<std::uint16_t>(std::lround(std::clamp(from + each * light, 0.0, kMost)));
+    }
+  });
+  return dark;
+}
+
+RawFrame without_light(const RawFrame& dark, const Cell& black) {
+  RawFrame unlit = empty_like(dark);
+  for (int y = 0; y < dark.counts.height(); ++y) {
+    for (int x = 0; x < dark.counts.width(); ++x) {
+      const double level = black[static_cast<std::size_t>(y & 1)][static_cast<std::size_t>(x & 1)];
+      unlit.counts(x, y) = static_cast<std::uint16_t>(std::lround(std::max(0.0, level)));
+    }
+  }
+  return unlit;
+}
+
+// Photographs looked at with one dark shot or another.
+struct Look {
+  solver::CellFit fit;
+  solver::RoomLight room;
+};
+
+Look look_at(const Photographs& photographs, int threads) {
+  const solver::FrameCells cells = spread_cells(photographs, threads);
+  Look look;
+  look.fit = solver::fit_cells(cells, threads);
+  const std::vector<solver::FrameMisfit> misfits = solver::frame_misfits(cells, look.fit, threads);
+  look.room =
+      solver::find_room_light(cells, look.fit, misfits, cell_noise(cells, look.fit, photographs.noise()));
+  return look;
+}
+
+class DarkShot {
+ public:
+  explicit DarkShot(const Exposures& exposures)
+      : exposures_(exposures),
+        photographs_(exposures.photographs),
+        mosaics_(*exposures.photographs.mosaics()),
+        threads_(exposures.context.threads),
+        black_(black_of(mosaics_)) {}
+
+  void question() {
+    const DarkLight light = mosaics_.dark ? light_of(mosaics_, black_) : DarkLight();
+    const Look before = look_at(photographs_, threads_);
+    if (is_lit(light) && set_aside(before, light)) return;
+    if (before.room.is_told()) take_off(before);
+  }
+
+ private:
+  static bool is_lit(const DarkLight& light) {
+    constexpr double kLeastShare = 0.003, kLeast_sigmas = 8;
+    return std::abs(light.bright) > kDarkWarns ||
+           (light.share > kLeastShare && light.share > kLeast_sigmas * light.sigma);
+  }
+
+  // Whether the frames fit better without the light of the dark shot: that they lack it.
+  bool set_aside(const Look& before, const DarkLight& light) {
+    constexpr double kFitsBetter = 0.8;  // of sigma
+    constexpr double kNearer = 0.3;      // of the dark shot's light: by so much nearer to none is the room's
+    RawFrame kept = std::move(*mosaics_.dark);
+    mosaics_.set_dark(without_light(kept, black_));
+    const Look after = look_at(photographs_, threads_);
+    const double nearer = std::abs(before.room.alone) - std::abs(after.room.alone);
+    const bool is_better = after.fit.sigma < kFitsBetter * before.fit.sigma ||
+                           nearer > kNearer * std::abs(after.room.alone - before.room.alone);
+    if (!is_better) {
+      mosaics_.set_dark(std::move(kept));
+      return false;
+    }
+    const solver::CellChange change = solver::change_of(after.fit, before.fit);
+    say({"DARK_SHOT",
+         fmt::format(
+             "The dark shot is {}: it has {} percent of full scale that the frames have not, which {}; "
+             "the black level stands in its place",
+             light.bright > 0 ? "lit" : "darker than black", percent_words(std::abs(light.bright)),
+             costs(change)),
+         "switch the lamps off and take it again: " + again(0)});
+    note(before.room, change);
+    return true;
+  }
+
+  void take_off(const Look& before) {
+    const double share = before.room.share;
+    mosaics_.set_dark(with_room(mosaics_, black_, share, threads_));
+    const Look after = look_at(photographs_, threads_);
+    const solver::CellChange change = solver::change_of(after.fit, before.fit);
+    const std::string amount = fmt::format("{} percent of what they gather (sigma {})",
+                                           percent_words(std::abs(share)), percent_words(before.room.sigma));
+    say({"ROOM_LIGHT",
+         share > 0
+             ? fmt::format("Light of the room is in all frames and {}: {}, which {}; it was taken off",
+                           mosaics_.dark ? "the dark shot lacks it" : "there is no dark shot", amount,
+                           costs(change))
+             : fmt::format(
+                   "The dark shot has light that the frames have not: {}, which {}; that was given back",
+                   amount, costs(change)),
+         share > 0 ? "darken the room, or take the dark shot in the same light and without a cap: " + again(0)
+                   : "darken the room and take it again: " + again(0)});
+    note(before.room, change);
+  }
+
+  static std::string costs(const solver::CellChange& change) {
+    return fmt::format("turns the normals by {:.2g}\u00b0 and makes albedo {} percent too {}",
+                       change.turned_deg, percent_words(std::abs(change.albedo)),
+                       change.albedo > 0 ? "bright" : "dark");
+  }
+  std::string again(int led) const {
+    return fmt::format("weft scan --again {} -o {}", led, exposures_.plan.session_name);
+  }
+  void say(Verdict verdict) {
+    lend(std::get<Mosaics>(exposures_.beside.repeats));
+    if (photographs_.parallel) lend(std::get<Mosaics>(*photographs_.parallel));
+    photographs_.conditions.of_frames.push_back(std::move(verdict));
+  }
+  void lend(Mosaics& others) const {
+    if (!others.frames.empty()) others.lend_dark(mosaics_);
+  }
+  void note(const solver::RoomLight& room, const solver::CellChange& change) {
+    photographs_.conditions.facts.room = {room.share, room.sigma, change.turned_deg, change.albedo};
+  }
+
+  const Exposures& exposures_;
+  Photographs& photographs_;
+  Mosaics& mosaics_;
+  int threads_;
+  Cell black_;
+};
+
+}  // namespace
+
+Result<void> question_dark(const Exposures& exposures) {
+  if (exposures.photographs.mosaics() == nullptr) return {};
+  DarkShot(exposures).question();
+  return {};
+}
+
+}  // namespace weft::solve

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/conditions/questioned_frames.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/base/percent.h"
+#include "solve/photographs/cell_noise.h"
+#include "solve/photographs/spread_cells.h"
+#include "solver/frame_fit/cell_fit.h"
+#include "solver/frame_fit/frame_parts.h"
+#include "solver/frame_fit/row_waves.h"
+
+namespace weft::solve {
+namespace {
+
+constexpr std::size_t kFewestRest = 5;    // frames that stay
+constexpr double kMostAccused = 1.0 / 3;  // of the frames: else it is not the frames
+
+// Rows of a mosaic whose counts are all one, and below black.
+std::optional<Rect> rows_without_reading(const RawFrame& frame) {
+  const Size size = frame.counts.size();
+  const float black = std::min({frame.black[0][0], frame.black[0][1], frame.black[1][0], frame.black[1][1]});
+  int first = -1, last = -1;
+  for (int y = 0; y < size.height; ++y) {
+    const std::uint16_t* row = frame.counts.plane().row(y);
+    if (!(static_cast<float>(row[0]) < black - 1)) continue;
+    if (!std::all_of(row, row + size.width, [&](std::uint16_t count) { return count == row[0]; })) continue;
+    if (first < 0) first = y;
+    last = y;
+  }
+  if (first < 0) return std::nullopt;
+  return Rect{0, first, size.width, last + 1};
+}
+
+class FrameQuestions {
+ public:
+  explicit FrameQuestions(const Exposures& exposures)
+      : exposures_(exposures),
+        photographs_(exposures.photographs),
+        threads_(exposures.context.threads),
+        mends_(photographs_.count()) {}
+
+  Result<void> ask() {
+    find_cut_transfers();
+    look_again();
+    even_out_rows();
+    note_frames();
+    hide_parts();
+    return leave_out_strangers();
+  }
+
+ private:
+  std::string name_of(std::size_t k) const {
+    if (exposures_.plan.is_of_rig) return fmt::format("LED {}", photographs_.leds[k]);
+    return fmt::format("photograph {} ({})", k + 1, exposures_.plan.lit[k].file);
+  }
+  std::string again(std::size_t k) const {
+    if (!exposures_.plan.is_of_rig) return "photograph it again, or leave it out of the list";
+    return fmt::format("take it again: weft scan --again {} -o {}", photographs_.leds[k],
+                       exposures_.plan.session_name);
+  }
+  void say(Verdict verdict) { photographs_.conditions.of_frames.push_back(std::move(verdict)); }
+
+  void look_again() {
+    cells_ = spread_cells(photographs_, threads_);
+    fit_ = solver::fit_cells(cells_, threads_);
+    misfits_ = solver::frame_misfits(cells_, fit_, threads_);
+  }
+
+  void find_cut_transfers() {
+    const Mosaics* mosaics = photographs_.mosaics();
+    if (mosaics == nullptr) return;
+    std::vector<std::optional<Rect>> rows(mosaics->count());
+    parallel_for(rows.size(), threads_,
+                 [&](std::size_t k, int) { rows[k] = rows_without_reading(mosaics->frames[k]); });
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      if (!rows[k]) continue;
+      mends_[k].missing = rows[k];
+      say({"FRAME_IN_PART",
+           fmt::format("The frame of {} holds one count below black in rows {} to {}: its transfer broke "
+                       "off; they are "
+                       "not read",
+                       name_of(k), rows[k]->y0, rows[k]->y1 - 1),
+           again(k)});
+    }
+    if (std::ranges::any_of(rows, [](const auto& r) { return r.has_value(); }))
+      mend_frames(mends_, photographs_.frames);
+  }
+
+  std::vector<std::size_t> strangers() const {
+    std::vector<std::size_t> all;
+    for (std::size_t k = 0; k < misfits_.size(); ++k) {
+      if (misfits_[k].fits_nothing) all.push_back(k);
+    }
+    return all;
+  }
+
+  // A lamp that flickers much looks like a stranger until it is evened out; other strangers look like waves.
+  void even_out_rows() {
+    const std::vector<std::size_t> before = strangers();
+    std::optional<solver::RowWaves> waves = solver::find_row_waves(cells_, fit_, {});
+    if (waves && !before.empty()) {
+      const std::vector<FrameMend> kept = mends_;
+      divide_by(*waves);
+      const bool explains = strangers().size() < before.size();
+      mends_ = kept;
+      mend_frames(kept, photographs_.frames);
+      look_again();
+      if (!explains) waves = solver::find_row_waves(cells_, fit_, before);
+    }
+    if (!waves) return;
+    const solver::CellFit left_alone = fit_;
+    divide_by(*waves);
+    waves_ = std::move(waves);
+    tell_waves(solver::change_of(fit_, left_alone));
+  }
+
+  void divide_by(const solver::RowWaves& waves) {
+    for (std::size_t k = 0; k < mends_.size(); ++k) {
+      if (waves.gain[k].empty()) continue;
+      std::vector<float>& gain = mends_[k].row_gain;
+      gain.assign(static_cast<std::size_t>(photographs_.size.height), waves.gain[k].back());
+      for (std::size_t y = 0; y < waves.gain[k].size() * kCellSide; ++y)
+        gain[y] = waves.gain[k][y / kCellSide];
+    }
+    mend_frames(mends_, photographs_.frames);
+    look_again();
+  }
+
+  void tell_waves(const solver::CellChange& change) {
+    ConditionFacts& facts = photographs_.conditions.facts;
+    facts.rows_period = kCellSide * waves_->period_rows;
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < mends_.size(); ++k) {
+      if (!mends_[k].row_gain.empty())
+        names.push_back(fmt::format("{} by {} percent", name_of(k), percent_words(waves_->amplitude[k])));
+    }
+    say({"ROWS_FLICKER",
+         fmt::format(
+             "Light flickers along the rows, {:.3g} rows from crest to crest: {}; left alone, that turns the "
+             "normals by {:.2g}\u00b0; it was evened out",
+             *facts.rows_period, fmt::join(names, ", "), change.turned_deg),
+         "drive the LEDs by a steady current and not by pulses, and expose for whole periods of the mains"});
+  }
+
+  void note_frames() {
+    const double noise = cell_noise(cells_, fit_, photographs_.noise());
+    for (std::size_t k = 0; k < misfits_.size(); ++k) {
+      FrameFitFacts& facts = photographs_.conditions.facts.frames.emplace_back();
+      facts.led = exposures_.plan.is_of_rig ? photographs_.leds[k] : static_cast<int>(k) + 1;
+      facts.missed = misfits_[k].missed;
+      facts.sigma = noise;
+      if (waves_ && !waves_->gain[k].empty()) facts.rows = waves_->amplitude[k];
+    }
+  }
+
+  // Pixels of a part, which has cells.
+  Rect pixels_of(const Rect& part) const {
+    const std::vector<int> columns = columns_of_cells(photographs_);
+    const auto x_of = [&](int column) {
+      if (column <= 0) return 0;
+      if (column >= static_cast<int>(columns.size())) return photographs_.size.width;
+      return columns[static_cast<std::size_t>(column)];
+    };
+    return {x_of(part.x0), kCellSide * part.y0, x_of(part.x1),
+            part.y1 >= cells_.rows ? photographs_.size.height : kCellSide * part.y1};
+  }
+
+  void hide_parts() {
+    bool hides = false;
+    for (std::size_t k = 0; k < misfits_.size(); ++k) {
+      const solver::FrameMisfit& misfit = misfits_[k];
+      if (!misfit.part || mends_[k].missing) continue;
+      const Rect part = pixels_of(*misfit.part);
+      mends_[k].missing = part;
+      hides = true;
+      photographs_.conditions.facts.frames[k].part = {part.x0, part.y0, part.x1, part.y1};
+      say({"FRAME_IN_PART",
+           fmt::format(
+               "A part of the frame of {} does not fit the others, {} percent of it, rows {} to {}, columns "
+               "{} to {}: it has {} percent of the light that they predict; it was not read",
+               name_of(k), percent_words(misfit.part_share), part.y0, part.y1 - 1, part.x0, part.x1 - 1,
+               percent_words(std::max(0.0, misfit.part_light))),
+           "see whether something lay before the lamp, or the LED came late; " + again(k)});
+    }
+    if (hides) mend_frames(mends_, photographs_.frames);
+  }
+
+  // Two frames that show each other's LEDs are told by the diagnosis.
+  bool are_exchanged(std::size_t k) const {
+    const std::optional<std::size_t> other = misfits_[k].lit_by;
+    return other && misfits_[*other].lit_by == k;
+  }
+
+  std::string cause_of(const solver::FrameMisfit& misfit) const {
+    if (misfit.same_as) return fmt::format("; it shows what that of {} shows", name_of(*misfit.same_as));
+    if (misfit.lit_by) return fmt::format("; it would be right for {}", name_of(*misfit.lit_by));
+    if (misfit.is_turned) return "; it would fit if it were turned by half";
+    return "";
+  }
+
+  // Of two shots that are one file one is wrong.
+  void accuse_copies() {
+    const std::vector<Shot>& lit = exposures_.plan.lit;
+    std::vector<std::string> digests(photographs_.count());
+    for (const Shot& shot : lit) {
+      const std::size_t k = exposures_.plan.is_of_rig ? photographs_.light_of(shot.led)
+                                                      : static_cast<std::size_t>(&shot - lit.data());
+      if (k < digests.size()) digests[k] = shot.sha256;
+    }
+    for (std::size_t k = 0; k < digests.size(); ++k) {
+      for (std::size_t j = k + 1; j < digests.size(); ++j) {
+        if (digests[k].empty() || digests[k] != digests[j]) continue;
+        const bool is_first = misfits_[k].missed > misfits_[j].missed;
+        misfits_[is_first ? k : j].fits_nothing = true;
+        misfits_[is_first ? k : j].same_as = is_first ? j : k;
+      }
+    }
+  }
+
+  // What a stranger would do where every reading counts alike, and the other strangers are away.
+  solver::CellChange cost_of(std::size_t stranger, const std::vector<std::size_t>& strangers) const {
+    solver::FrameCells cells = cells_;
+    const auto hide = [&](std::size_t k) {
+      for (std::size_t at = k; at < cells.value.size(); at += cells.count)
+        cells.value[at] = std::numeric_limits<float>::quiet_NaN();
+    };
+    for (const std::size_t k : strangers) {
+      if (k != stranger) hide(k);
+    }
+    const solver::CellFit with = solver::plain_fit(cells, threads_);
+    hide(stranger);
+    return solver::change_of(solver::plain_fit(cells, threads_), with);
+  }
+
+  Result<void> leave_out_strangers() {
+    accuse_copies();
+    std::vector<std::size_t> strangers;
+    for (std::size_t k = 0; k < misfits_.size(); ++k) {
+      if (misfits_[k].fits_nothing && !are_exchanged(k)) strangers.push_back(k);
+    }
+    const std::size_t count = photographs_.count();
+    if (strangers.empty() || count - strangers.size() < kFewestRest ||
+        static_cast<double>(strangers.size()) > kMostAccused * static_cast<double>(count))
+      return {};
+    for (const std::size_t k : strangers) {
+      const solver::FrameMisfit& misfit = misfits_[k];
+      const solver::CellChange cost = cost_of(k, strangers);
+      photographs_.conditions.facts.frames[k].costs_deg = cost.turned_deg;
+      say({"FRAME_FITS_NOTHING",
+           fmt::format(
+               "The frame of {} fits none of the others: what they predict is missed by {} percent, in the "
+               "others by {}{}; by least squares it turns the normals by {:.2g}{} and makes albedo {} "
+               "percent "
+               "too {}; it was left out",
+               name_of(k), percent_words(misfit.missed), percent_words(misfit.typical), cause_of(misfit),
+               cost.turned_deg, "\u00b0", percent_words(std::abs(cost.albedo)),
+               cost.albedo > 0 ? "bright" : "dark"),
+           "see whether it is the right photograph and nothing moved; " + again(k)});
+      photographs_.conditions.facts.left_out.push_back(
+          {exposures_.plan.is_of_rig ? photographs_.leds[k] : static_cast<int>(k) + 1, "fits nothing"});
+    }
+    return leave_out(strangers, photographs_);
+  }
+
+  const Exposures& exposures_;
+  Photographs& photographs_;
+  int threads_;
+  std::vector<FrameMend> mends_;
+  solver::FrameCells cells_;
+  solver::CellFit fit_;
+  std::optional<solver::RowWaves> waves_;
+  std::vector<solver::FrameMisfit> misfits_;
+};
+
+}  // namespace
+
+Result<void> question_frames(const Exposures& exposures) {
+  if (exposures.photographs.mosaics() == nullptr) return {};
+  return FrameQuestions(exposures).ask();
+}
+
+}  // namespace weft::solve

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/frame_fit/frame_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/base/statistics.h"
+
+namespace weft::solver {
+namespace {
+
+constexpr std::size_t kFewestLights = 6;
+constexpr double kIsMatt = 0.03;           // of the brightness: who is missed by more shines
+constexpr double kMissedTimesOfGloss = 4;  // as kMissedTimes
+constexpr int kAcross = 16, kDown = 12;    // blocks of the frame
+constexpr double kPartFrom = 0.15;         // of the brightness: a block that is missed by it does not fit
+constexpr double kPartTimes = 6;           // and by so many times the blocks of all frames
+constexpr double kLeastPart = 0.015, kMostPart = 0.7;  // of the frame
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+double predicted(const FrameCells& cells, const CellFit& fit, std::size_t cell, std::size_t k) {
+  const std::size_t at = cell * cells.count + k;
+  return static_cast<double>(cells.value[at]) -
+         static_cast<double>(fit.error[at]) * static_cast<double>(fit.brightness[cell]);
+}
+
+double gain_of(const FrameCells& cells, const CellFit& fit, std::size_t k) {
+  std::vector<double> ratios;
+  for (std::size_t cell = 0; cell < cells.cells(); ++cell) {
+    const double expected = predicted(cells, fit, cell, k);
+    if (expected > static_cast<double>(kLitFrom * fit.brightness[cell]))
+      ratios.push_back(static_cast<double>(cells.value[cell * cells.count + k]) / expected);
+  }
+  constexpr std::size_t kFewest = 50;
+  return ratios.size() < kFewest ? 1 : std::max(0.0, median(std::move(ratios)));
+}
+
+struct Missed {
+  double all = kNone;          // median over cells
+  std::vector<double> blocks;  // medians of signed errors
+};
+
+Missed missed_of(const FrameCells& cells, const CellFit& fit, std::size_t k, double gain) {
+  std::vector<std::vector<float>> errors(kAcross * kDown);
+  std::vector<float> all;
+  for (int y = 0; y < cells.rows; ++y) {
+    for (int x = 0; x < cells.columns; ++x) {
+      const auto cell =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(x);
+      const double expected = predicted(cells, fit, cell, k);
+      if (!std::isfinite(expected) || !(fit.brightness[cell] > 0)) continue;
+      const double error = (static_cast<double>(cells.value[cell * cells.count + k]) - gain * expected) /
+                           static_cast<double>(fit.brightness[cell]);
+      const auto block =
+          static_cast<std::size_t>(y * kDown / cells.rows * kAcross + x * kAcross / cells.columns);
+      errors[block].push_back(static_cast<float>(error));
+      all.push_back(std::abs(static_cast<float>(error)));
+    }
+  }
+  Missed missed;
+  missed.all = static_cast<double>(median(std::move(all)));
+  for (std::vector<float>& block : errors)
+    missed.blocks.push_back(static_cast<double>(median(std::move(block))));
+  return missed;
+}
+
+// The largest part of blocks that touch and do not fit.
+std::vector<std::size_t> largest_part(const std::vector<double>& blocks, double from) {
+  std::vector<bool> is_off(blocks.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i) is_off[i] = std::abs(blocks[i]) > from;
+  std::vector<std::size_t> largest;
+  for (std::size_t start = 0; start < blocks.size(); ++start) {
+    std::vector<std::size_t> part;
+    if (is_off[start]) part.push_back(start), is_off[start] = false;
+    for (std::size_t next = 0; next < part.size(); ++next) {
+      const auto x = static_cast<int>(part[next]) % kAcross, y = static_cast<int>(part[next]) / kAcross;
+      for (const auto& [dx, dy] : std::array<std::pair<int, int>, 4>{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}}) {
+        const int u = x + dx, v = y + dy;
+        if (u < 0 || v < 0 || u >= kAcross || v >= kDown) continue;
+        const auto at = static_cast<std::size_t>(v * kAcross + u);
+        if (is_off[at]) is_off[at] = false, part.push_back(at);
+      }
+    }
+    if (part.size() > largest.size()) largest = std::move(part);
+  }
+  return largest;
+}
+
+// Cells of the blocks and one block more to each side, which may be half in it.
+Rect around(const std::vector<std::size_t>& part, const FrameCells& cells) {
+  int x0 = kAcross, y0 = kDown, x1 = 0, y1 = 0;
+  for (const std::size_t block : part) {
+    const auto x = static_cast<int>(block) % kAcross, y = static_cast<int>(block) / kAcross;
+    x0 = std::min(x0, x - 1), x1 = std::max(x1, x + 2), y0 = std::min(y0, y - 1), y1 = std::max(y1, y + 2);
+  }
+  const auto along = [](int block, int blocks, int length) {
+    return std::clamp(block, 0, blocks) * length / blocks;
+  };
+  return {along(x0, kAcross, cells.columns), along(y0, kDown, cells.rows), along(x1, kAcross, cells.columns),
+          along(y1, kDown, cells.rows)};
+}
+
+// What a photograph is missed by beyond a part of it.
+double missed_beyond(const FrameCells& cells, const CellFit& fit, std::size_t k, double gain,
+                     const Rect& part) {
+  std::vector<float> errors;
+  for (int y = 0; y < cells.rows; ++y) {
+    for (int x = 0; x < cells.columns; ++x) {
+      if (x >= part.x0 && x < part.x1 && y >= part.y0 && y < part.y1) continue;
+      const auto cell =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(x);
+      const double expected = predicted(cells, fit, cell, k);
+      if (!std::isfinite(expected) || !(fit.brightness[cell] > 0)) continue;
+      const double value = static_cast<double>(cells.value[cell * cells.count + k]);
+      errors.push_back(
+          static_cast<float>(std::abs(value - gain * expected) / static_cast<double>(fit.brightness[cell])));
+    }
+  }
+  return static_cast<double>(median(std::move(errors)));
+}
+
+// Light in a part over what is predicted.
+double light_in(const FrameCells& cells, const CellFit& fit, std::size_t k, const Rect& part) {
+  std::vector<double> ratios;
+  for (int y = part.y0; y < part.y1; ++y) {
+    for (int x = part.x0; x < part.x1; ++x) {
+      const auto cell =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(x);
+      const double expected = predicted(cells, fit, cell, k);
+      if (expected > static_cast<double>(kLitFrom * fit.brightness[cell]))
+        ratios.push_back(static_cast<double>(cells.value[cell * cells.count + k]) / expected);
+    }
+  }
+  return ratios.empty() ? 1 : median(std::move(ratios));
+}
+
+// What is left of photograph k where it is compared with `other`, of the brightness: its readings, through
+// the best gain.
+template <typename Other>
+double difference(const FrameCells& cells, const CellFit& fit, std::size_t k, const Other& other) {
+  double own = 0, both = 0;
+  const auto each = [&](const auto& what) {
+    for (std::size_t cell = 0; cell < cells.cells(); ++cell) {
+      const double a = static_cast<double>(cells.value[cell * cells.count + k]) *
+                       static_cast<double>(cells.strength[cell * cells.count + k]);
+      const double b = other(cell);
+      if (std::isfinite(a) && std::isfinite(b) && fit.brightness[cell] > 0) what(a, b);
+    }
+  };
+  each([&](double a, double b) { own += b * b, both += a * b; });
+  const double gain = own > 0 ? both / own : 0;
+  std::vector<double> left, all;
+  each([&](double a, double b) { left.push_back(std::abs(a - gain * b)), all.push_back(std::abs(a)); });
+  return all.empty() ? kNone : median(std::move(left)) / median(std::move(all));
+}
+
+// Why a photograph fits nothing, as far as it tells.
+void find_cause(const FrameCells& cells, const CellFit& fit, std::size_t k, FrameMisfit& misfit) {
+  constexpr double kSame = 2.5;  // times what the others are missed by
+  const double least = kSame * misfit.typical;
+  for (std::size_t j = 0; j < cells.count; ++j) {
+    const auto expected = [&](std::size_t cell) {
+      return predicted(cells, fit, cell, j) * static_cast<double>(cells.strength[cell * cells.count + j]);
+    };
+    if (j != k && difference(cells, fit, k, expected) < least) misfit.lit_by = j;
+    const auto shown = [&](std::size_t cell) {
+      return static_cast<double>(cells.value[cell * cells.count + j]) *
+             static_cast<double>(cells.strength[cell * cells.count + j]);
+    };
+    if (j != k && difference(cells, fit, k, shown) < least) misfit.same_as = j;
+  }
+  const auto turned = [&](std::size_t cell) {
+    const std::size_t back = cells.cells() - 1 - cell;
+    return predicted(cells, fit, back, k) * static_cast<double>(cells.strength[back * cells.count + k]);
+  };
+  misfit.is_turned = !misfit.same_as && !misfit.lit_by && difference(cells, fit, k, turned) < least;
+}
+
+}  // namespace
+
+std::vector<FrameMisfit> frame_misfits(const FrameCells& cells, const CellFit& fit, int threads) {
+  std::vector<FrameMisfit> all(cells.count);
+  if (cells.count < kFewestLights) return all;
+  std::vector<Missed> missed(cells.count);
+  parallel_for(cells.count, threads, [&](std::size_t k, int) {
+    all[k].gain = gain_of(cells, fit, k);
+    missed[k] = missed_of(cells, fit, k, all[k].gain);
+    all[k].missed = missed[k].all;
+  });
+  std::vector<double> blocks;
+  for (const Missed& each : missed) {
+    for (const double block : each.blocks) {
+      if (std::isfinite(block)) blocks.push_back(std::abs(block));
+    }
+  }
+  constexpr double kMostOfFrames = 0.75;  // one of six may be off all over
+  const double from = std::max(kPartFrom, kPartTimes * quantile(std::move(blocks), kMostOfFrames));
+  const auto times = [](double typical) { return typical > kIsMatt ? kMissedTimesOfGloss : kMissedTimes; };
+  parallel_for(cells.count, threads, [&](std::size_t k, int) {
+    FrameMisfit& misfit = all[k];
+    std::vector<double> others;
+    for (std::size_t j = 0; j < cells.count; ++j) {
+      if (j != k && std::isfinite(missed[j].all)) others.push_back(missed[j].all);
+    }
+    misfit.typical = median(std::move(others));
+    const double fits_to = std::max(kMissedFrom, times(misfit.typical) * misfit.typical);
+    const auto blocks_off = largest_part(missed[k].blocks, std::max(from, kPartTimes * misfit.typical));
+    const double share = static_cast<double>(blocks_off.size()) / (kAcross * kDown);
+    const bool is_part = share >= kLeastPart && share <= kMostPart;
+    const Rect part = is_part ? around(blocks_off, cells) : Rect();
+    if (is_part && missed_beyond(cells, fit, k, misfit.gain, part) <= fits_to) {
+      misfit.part = part;
+      misfit.part_share = share;
+      misfit.part_light = light_in(cells, fit, k, part);
+    }
+    misfit.fits_nothing = !misfit.part && misfit.missed > fits_to;
+    if (misfit.fits_nothing) find_cause(cells, fit, k, misfit);
+  });
+  return all;
+}
+
+}  // namespace weft::solver

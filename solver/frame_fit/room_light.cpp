@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/frame_fit/room_light.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/base/statistics.h"
+
+namespace weft::solver {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t kMostCells = 6'000;
+constexpr std::size_t kFewestGains = 6;
+constexpr int kParts = 4;            // of the frame, a side
+constexpr double kGainPrior = 0.03;  // of the logarithm of a gain
+constexpr double kNoRoomFrom = 6;    // sigma, beyond which an error is no light of the room
+constexpr double kToldFrom_sigmas = 5;
+// What a clean cloth shows at most, measured (docs/measured/conditions.md): always, of readings in shadow,
+// and of what no noise explains.
+constexpr double kDoubt = 0.004, kDoubtOfShadow = 0.08, kDoubtOfMisfit = 4;
+
+// Least squares of the share and the gains: share first.
+struct Equations {
+  MatrixXd a;
+  VectorXd rhs;
+
+  explicit Equations(Eigen::Index unknowns)
+      : a(MatrixXd::Zero(unknowns, unknowns)), rhs(VectorXd::Zero(unknowns)) {}
+  // With gains beside it and without: on cloth that Lambert's law does not describe they differ, and the
+  // smaller one is believed, none where they contradict each other.
+  double share(const MatrixXd& prior) const {
+    const double with_gains = (a + prior).ldlt().solve(rhs)[0], without = alone(prior);
+    if (with_gains * without <= 0) return 0;
+    return std::abs(with_gains) < std::abs(without) ? with_gains : without;
+  }
+  double alone(const MatrixXd& prior) const { return rhs[0] / (a(0, 0) + prior(0, 0)); }
+};
+
+// A cell's lit readings, over its brightness, off the span of their directions: what light and gains explain,
+// and the rest.
+struct CellPart {
+  MatrixXd design;
+  VectorXd rest;
+};
+
+std::optional<CellPart> part_of(const FrameCells& cells, const CellFit& fit,
+                                std::span<const FrameMisfit> misfits, std::size_t cell) {
+  const std::size_t count = cells.count, from = cell * count;
+  const float brightness = fit.brightness[cell];
+  if (!(length(fit.normal[cell]) > 0)) return std::nullopt;
+  double mean = 0;
+  std::vector<std::size_t> lit;
+  for (std::size_t k = 0; k < count; ++k) {
+    const float value = cells.value[from + k];
+    if (!std::isfinite(value)) return std::nullopt;  // full: its mean is not known
+    mean += static_cast<double>(value) * static_cast<double>(cells.strength[from + k]) /
+            static_cast<double>(count);
+    if (!misfits[k].is_wrong() && value > kLitFrom * brightness &&
+        std::abs(static_cast<double>(fit.error[from + k])) < kNoRoomFrom * fit.sigma)
+      lit.push_back(k);
+  }
+  if (lit.size() < kFewestGains) return std::nullopt;
+  const auto n = static_cast<Eigen::Index>(lit.size());
+  MatrixXd l(n, 3), design = MatrixXd::Zero(n, static_cast<Eigen::Index>(1 + count));
+  VectorXd x(n);
+  const double scale = 1 / static_cast<double>(brightness);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::size_t k = lit[static_cast<std::size_t>(i)];
+    const Vec3 direction = cells.direction[from + k];
+    l.row(i) << direction.x, direction.y, direction.z;
+    x[i] = scale * static_cast<double>(cells.value[from + k]);
+    design(i, 0) = scale * mean / static_cast<double>(cells.strength[from + k]);
+    // As it is predicted: a gain of all readings would else take away their noise.
+    design(i, 1 + static_cast<Eigen::Index>(k)) = scale * dot(fit.normal[cell], direction);
+  }
+  const auto solved = (l.transpose() * l).ldlt();
+  return CellPart{design - l * solved.solve(l.transpose() * design), x - l * solved.solve(l.transpose() * x)};
+}
+
+// Sigma of what light and gains leave, by its median.
+double misfit_with(const VectorXd& solution, const std::vector<CellPart>& told) {
+  constexpr double kMedianOfNormal = 0.6745, kUnknowns = 3;
+  std::vector<double> left;
+  for (const CellPart& part : told) {
+    const VectorXd rest = part.rest - part.design * solution;
+    const double share = 1 - kUnknowns / static_cast<double>(rest.size());  // of their variance that is left
+    for (const double value : rest) left.push_back(std::abs(value) / std::sqrt(share));
+  }
+  return median(std::move(left)) / kMedianOfNormal;
+}
+
+double unlit_share(const FrameCells& cells, const CellFit& fit) {
+  std::int64_t all = 0, unlit = 0;
+  for (std::size_t i = 0; i < cells.value.size(); ++i) {
+    const float brightness = fit.brightness[i / cells.count];
+    if (!std::isfinite(cells.value[i]) || !(brightness > 0)) continue;
+    ++all;
+    unlit += !(cells.value[i] > kLitFrom * brightness);
+  }
+  return all > 0 ? static_cast<double>(unlit) / static_cast<double>(all) : 1;
+}
+
+}  // namespace
+
+bool RoomLight::is_told() const {
+  return std::abs(share) > doubt && std::abs(share) > kToldFrom_sigmas * sigma;
+}
+
+RoomLight find_room_light(const FrameCells& cells, const CellFit& fit, std::span<const FrameMisfit> misfits,
+                          double noise) {
+  const RoomLight none = {0, 0, 1, 1};
+  if (cells.count < kFewestGains) return none;
+  const auto unknowns = static_cast<Eigen::Index>(1 + cells.count);
+  std::vector<Equations> parts(kParts * kParts, Equations(unknowns));
+  const std::size_t step = std::max<std::size_t>(1, cells.cells() / kMostCells) | 1U;
+  const auto columns = static_cast<std::size_t>(cells.columns), rows = static_cast<std::size_t>(cells.rows);
+  std::vector<CellPart> told;
+  for (std::size_t cell = 0; cell < cells.cells(); cell += step) {
+    std::optional<CellPart> part = part_of(cells, fit, misfits, cell);
+    if (!part) continue;
+    Equations& equations = parts[cell / columns * kParts / rows * kParts + cell % columns * kParts / columns];
+    equations.a += part->design.transpose() * part->design;
+    equations.rhs += part->design.transpose() * part->rest;
+    told.push_back(std::move(*part));
+  }
+  constexpr std::size_t kFewestCells = 200;
+  if (told.size() < kFewestCells) return none;
+  Equations all(unknowns);
+  for (const Equations& part : parts) all.a += part.a, all.rhs += part.rhs;
+  MatrixXd prior = MatrixXd::Zero(unknowns, unknowns);
+  const double precision = fit.sigma > 0 ? std::pow(fit.sigma / kGainPrior, 2) : 0;
+  for (Eigen::Index k = 1; k < unknowns; ++k) prior(k, k) = precision;
+  prior(0, 0) = precision / 100;  // keeps what no cell tells at 0
+  RoomLight found;
+  const VectorXd solution = (all.a + prior).ldlt().solve(all.rhs);
+  found.share = all.share(prior);
+  found.alone = all.alone(prior);
+  // Jackknife over the parts.
+  double squares = 0;
+  for (const Equations& part : parts) {
+    Equations rest = all;
+    rest.a -= part.a, rest.rhs -= part.rhs;
+    squares += std::pow(rest.share(prior) - found.share, 2);
+  }
+  const double by_noise =
+      (all.a + prior).ldlt().solve(VectorXd::Unit(unknowns, 0))[0] * fit.sigma * fit.sigma;
+  found.sigma = std::sqrt(squares * (kParts * kParts - 1) / (kParts * kParts) + std::max(0.0, by_noise));
+  found.doubt = kDoubt + kDoubtOfShadow * unlit_share(cells, fit) +
+                kDoubtOfMisfit * std::max(0.0, misfit_with(solution, told) - 2 * noise);
+  return found;
+}
+
+}  // namespace weft::solver

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "solver/frame_fit/cell_fit.h"
+
+namespace weft::solver {
+
+/// Light that rises and falls from row to row of photographs, as that of a lamp does that flickers while the
+/// shutter's slit goes over the sensor.
+struct RowWaves {
+  double period_rows = 0;         ///< of cells
+  std::vector<double> amplitude;  ///< by photograph, of the first wave: a share of its light
+  double sigma = 0;               ///< of an amplitude, by waves of other periods
+  /// By photograph: its light over its mean, row by row of cells. Empty of one that does not flicker.
+  std::vector<std::vector<float>> gain;
+
+  double largest() const;
+};
+
+/// Looks for one period in errors that are the same in all columns: a weave's differ from column to column.
+/// Periods of 3 rows of cells to a half of the frame are looked for. None where nothing is above kLeastWave
+/// and its sigma. Photographs that are `strangers` to the others are not looked at.
+inline constexpr double kLeastWave = 0.002;
+std::optional<RowWaves> find_row_waves(const FrameCells& cells, const CellFit& fit,
+                                       std::span<const std::size_t> strangers);
+
+}  // namespace weft::solver
