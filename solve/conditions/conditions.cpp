@@ -19,9 +19,9 @@ namespace weft::solve {
 namespace {
 
 // In the order in which they must be met: each is found in photographs that those before it have put right.
-constexpr std::array kConditions = {find_full_scale, tell_veil,    mend_photosites,     question_dark,
-                                    question_lights, add_brackets, drop_useless_lights, question_frames,
-                                    follow_drift,    lay_level,    follow_cloth};
+constexpr std::array kConditions = {find_full_scale, tell_veil,       mend_photosites, hide_unread_rows,
+                                    question_dark,   question_lights, add_brackets,    drop_useless_lights,
+                                    question_frames, follow_drift,    lay_level,       follow_cloth};
 
 }  // namespace
 

@@ -43,16 +43,33 @@ std::optional<Rect> rows_without_reading(const RawFrame& frame) {
   return Rect{0, first, size.width, last + 1};
 }
 
+// What was done to frames until now.
+std::vector<FrameMend> mends_of(const Photographs& photographs) {
+  const Mosaics* mosaics = photographs.mosaics();
+  if (mosaics == nullptr || mosaics->mends.empty()) return std::vector<FrameMend>(photographs.count());
+  return mosaics->mends;
+}
+
+std::string name_in(const Exposures& exposures, std::size_t k) {
+  if (exposures.plan.is_of_rig) return fmt::format("LED {}", exposures.photographs.leds[k]);
+  return fmt::format("photograph {} ({})", k + 1, exposures.plan.lit[k].file);
+}
+
+std::string how_again(const Exposures& exposures, std::size_t k) {
+  if (!exposures.plan.is_of_rig) return "photograph it again, or leave it out of the list";
+  return fmt::format("take it again: weft scan --again {} -o {}", exposures.photographs.leds[k],
+                     exposures.plan.session_name);
+}
+
 class FrameQuestions {
  public:
   explicit FrameQuestions(const Exposures& exposures)
       : exposures_(exposures),
         photographs_(exposures.photographs),
         threads_(exposures.context.threads),
-        mends_(photographs_.count()) {}
+        mends_(mends_of(photographs_)) {}
 
   Result<void> ask() {
-    find_cut_transfers();
     look_again();
     even_out_rows();
     note_frames();
@@ -61,41 +78,14 @@ class FrameQuestions {
   }
 
  private:
-  std::string name_of(std::size_t k) const {
-    if (exposures_.plan.is_of_rig) return fmt::format("LED {}", photographs_.leds[k]);
-    return fmt::format("photograph {} ({})", k + 1, exposures_.plan.lit[k].file);
-  }
-  std::string again(std::size_t k) const {
-    if (!exposures_.plan.is_of_rig) return "photograph it again, or leave it out of the list";
-    return fmt::format("take it again: weft scan --again {} -o {}", photographs_.leds[k],
-                       exposures_.plan.session_name);
-  }
+  std::string name_of(std::size_t k) const { return name_in(exposures_, k); }
+  std::string again(std::size_t k) const { return how_again(exposures_, k); }
   void say(Verdict verdict) { photographs_.conditions.of_frames.push_back(std::move(verdict)); }
 
   void look_again() {
     cells_ = spread_cells(photographs_, threads_);
     fit_ = solver::fit_cells(cells_, threads_);
     misfits_ = solver::frame_misfits(cells_, fit_, threads_);
-  }
-
-  void find_cut_transfers() {
-    const Mosaics* mosaics = photographs_.mosaics();
-    if (mosaics == nullptr) return;
-    std::vector<std::optional<Rect>> rows(mosaics->count());
-    parallel_for(rows.size(), threads_,
-                 [&](std::size_t k, int) { rows[k] = rows_without_reading(mosaics->frames[k]); });
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      if (!rows[k]) continue;
-      mends_[k].missing = rows[k];
-      say({"FRAME_IN_PART",
-           fmt::format("The frame of {} holds one count below black in rows {} to {}: its transfer broke "
-                       "off; they are "
-                       "not read",
-                       name_of(k), rows[k]->y0, rows[k]->y1 - 1),
-           again(k)});
-    }
-    if (std::ranges::any_of(rows, [](const auto& r) { return r.has_value(); }))
-      mend_frames(mends_, photographs_.frames);
   }
 
   std::vector<std::size_t> strangers() const {
@@ -109,21 +99,29 @@ class FrameQuestions {
   // A lamp that flickers much looks like a stranger until it is evened out; other strangers look like waves.
   void even_out_rows() {
     const std::vector<std::size_t> before = strangers();
-    std::optional<solver::RowWaves> waves = solver::find_row_waves(cells_, fit_, {});
+    std::optional<solver::RowWaves> waves = solver::find_row_waves(cells_, fit_, {}, threads_);
     if (waves && !before.empty()) {
       const std::vector<FrameMend> kept = mends_;
       divide_by(*waves);
-      const bool explains = strangers().size() < before.size();
+      const bool explains = fit_after_all(before);
       mends_ = kept;
       mend_frames(kept, photographs_.frames);
       look_again();
-      if (!explains) waves = solver::find_row_waves(cells_, fit_, before);
+      if (!explains) waves = solver::find_row_waves(cells_, fit_, before, threads_);
     }
     if (!waves) return;
     const solver::CellFit left_alone = fit_;
-    divide_by(*waves);
+    if (waves->are_even) divide_by(*waves);
     waves_ = std::move(waves);
     tell_waves(solver::change_of(fit_, left_alone));
+  }
+
+  // Whether some that looked like strangers fit as well as the others do.
+  bool fit_after_all(const std::vector<std::size_t>& suspects) const {
+    constexpr double kAsWell = 1.5;
+    return std::ranges::any_of(suspects, [&](std::size_t k) {
+      return !misfits_[k].fits_nothing && misfits_[k].missed < kAsWell * misfits_[k].typical;
+    });
   }
 
   void divide_by(const solver::RowWaves& waves) {
@@ -143,14 +141,17 @@ class FrameQuestions {
     facts.rows_period = kCellSide * waves_->period_rows;
     std::vector<std::string> names;
     for (std::size_t k = 0; k < mends_.size(); ++k) {
-      if (!mends_[k].row_gain.empty())
+      if (!waves_->gain[k].empty())
         names.push_back(fmt::format("{} by {} percent", name_of(k), percent_words(waves_->amplitude[k])));
     }
     say({"ROWS_FLICKER",
-         fmt::format(
-             "Light flickers along the rows, {:.3g} rows from crest to crest: {}; left alone, that turns the "
-             "normals by {:.2g}\u00b0; it was evened out",
-             *facts.rows_period, fmt::join(names, ", "), change.turned_deg),
+         fmt::format("Light flickers along the rows, {:.3g} rows from crest to crest: {}; {}",
+                     *facts.rows_period, fmt::join(names, ", "),
+                     waves_->are_even
+                         ? fmt::format("left alone, that turns the normals by {:.2g}\u00b0; it was evened "
+                                       "out",
+                                       change.turned_deg)
+                         : "it was left as it is"),
          "drive the LEDs by a steady current and not by pulses, and expose for whole periods of the mains"});
   }
 
@@ -285,6 +286,31 @@ class FrameQuestions {
 };
 
 }  // namespace
+
+Result<void> hide_unread_rows(const Exposures& exposures) {
+  Photographs& photographs = exposures.photographs;
+  const Mosaics* mosaics = photographs.mosaics();
+  if (mosaics == nullptr) return {};
+  std::vector<std::optional<Rect>> rows(mosaics->count());
+  parallel_for(rows.size(), exposures.context.threads,
+               [&](std::size_t k, int) { rows[k] = rows_without_reading(mosaics->frames[k]); });
+  std::vector<FrameMend> mends(rows.size());
+  bool hides = false;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (!rows[k]) continue;
+    hides = true;
+    mends[k].missing = rows[k];
+    photographs.conditions.of_frames.push_back(
+        {"FRAME_IN_PART",
+         fmt::format(
+             "The frame of {} holds one count, below black, in rows {} to {}: its transfer broke off; they "
+             "are not read",
+             name_in(exposures, k), rows[k]->y0, rows[k]->y1 - 1),
+         how_again(exposures, k)});
+  }
+  if (hides) mend_frames(std::move(mends), photographs.frames);
+  return {};
+}
 
 Result<void> question_frames(const Exposures& exposures) {
   if (exposures.photographs.mosaics() == nullptr) return {};

@@ -180,58 +180,157 @@ std::vector<Complex> harmonic(const std::vector<std::vector<double>>& light, con
   return all;
 }
 
-}  // namespace
-
-double RowWaves::largest() const {
-  return amplitude.empty() ? 0 : std::ranges::max(amplitude);
+// What rows of photographs are over what the others predict, by photograph; clipped as errors are.
+std::vector<std::vector<double>> row_errors(const FrameCells& cells, const CellFit& fit, const Rows& rows) {
+  std::vector<std::vector<double>> all;
+  for (std::size_t k = 0; k < cells.count; ++k) {
+    std::vector<double> sum(static_cast<std::size_t>(cells.rows)), lit(sum.size());
+    for_each_error(cells, fit, k, [&](std::size_t y, std::size_t, double error, std::size_t cell) {
+      sum[y] += error * static_cast<double>(fit.brightness[cell] / cells.value[cell * cells.count + k]);
+      ++lit[y];
+    });
+    for (std::size_t y = 0; y < sum.size(); ++y) sum[y] = lit[y] >= kFewestLitCells ? sum[y] / lit[y] : 0;
+    rows.detrend(sum);
+    all.push_back(std::move(sum));
+  }
+  return all;
 }
 
+FrameCells divided_by(const FrameCells& cells, const std::vector<std::vector<double>>& logs) {
+  FrameCells even = cells;
+  const std::size_t row = static_cast<std::size_t>(cells.columns) * cells.count;
+  for (std::size_t i = 0; i < even.value.size(); ++i)
+    even.value[i] *= static_cast<float>(std::exp(-logs[i % cells.count][i / row]));
+  return even;
+}
+
+// One period, and the light that comes and goes with it.
+class Waves {
+ public:
+  Waves(const FrameCells& cells, const Rows& rows, std::vector<double> numbers, std::vector<bool> flickers,
+        int threads)
+      : cells_(cells),
+        rows_(rows),
+        numbers_(std::move(numbers)),
+        flickers_(std::move(flickers)),
+        threads_(threads),
+        logs_(cells.count, std::vector<double>(static_cast<std::size_t>(cells.rows))) {}
+
+  // Whether light evens the errors out. It is told by the rows themselves, as far as that fits the errors,
+  // and then by what errors are left.
+  bool follow(const CellFit& fit) {
+    constexpr double kFits = 0.5, kIsEven = 0.25;  // of the power of the errors
+    constexpr int kTimes = 3;
+    constexpr double kStep = 0.8;
+    const double before = power_of(row_errors(cells_, fit, rows_));
+    add(row_light(cells_, fit, rows_), 1, true);
+    CellFit even = fit_cells(divided_by(cells_, logs_), threads_);
+    if (power_of(row_errors(divided_by(cells_, logs_), even, rows_)) > kFits * before) {
+      for (std::vector<double>& log : logs_) std::ranges::fill(log, 0);
+      even = fit;
+    }
+    for (int i = 0; i < kTimes; ++i) {
+      add(row_errors(divided_by(cells_, logs_), even, rows_), kStep, false);
+      even = fit_cells(divided_by(cells_, logs_), threads_);
+    }
+    return power_of(row_errors(divided_by(cells_, logs_), even, rows_)) < kIsEven * before;
+  }
+
+  double amplitude(std::size_t k) const { return std::abs(rows_.wave(logs_[k], numbers_.front())); }
+  std::vector<float> gain(std::size_t k) const {
+    std::vector<float> gain;
+    for (const double log : logs_[k]) gain.push_back(static_cast<float>(std::exp(log)));
+    return gain;
+  }
+
+ private:
+  double power_of(const std::vector<std::vector<double>>& errors) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      for (const double number : numbers_) sum += flickers_[k] ? std::norm(rows_.wave(errors[k], number)) : 0;
+    }
+    return sum;
+  }
+
+  void add(const std::vector<std::vector<double>>& light, double share, bool has_cloth) {
+    for (const double number : numbers_) {
+      std::vector<Complex> waves;
+      if (has_cloth) waves = harmonic(light, rows_, number);
+      for (std::size_t k = 0; k < light.size(); ++k) {
+        if (!flickers_[k]) continue;
+        const Complex wave = share * (has_cloth ? waves[k] : rows_.wave(light[k], number));
+        const Complex step = std::polar(1.0, 2 * kPi * number / static_cast<double>(cells_.rows));
+        Complex phase = 1;
+        for (double& log : logs_[k]) log += (wave * phase).real(), phase *= step;
+      }
+    }
+  }
+
+  const FrameCells& cells_;
+  const Rows& rows_;
+  std::vector<double> numbers_;  // of waves over the frame: the first, and its multiples that are there
+  std::vector<bool> flickers_;   // by photograph
+  int threads_;
+  std::vector<std::vector<double>> logs_;  // of the light of rows, by photograph
+};
+
+// Numbers of waves over the frame that errors have, the strongest first.
+struct Spectrum {
+  std::vector<double> powers;
+  double floor = 0;
+
+  std::vector<std::size_t> strongest() const {
+    std::vector<std::size_t> order(powers.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return powers[a] > powers[b]; });
+    order.resize(std::min(kMostTried, order.size()));
+    return order;
+  }
+};
+
+Spectrum spectrum_of(const std::vector<std::vector<double>>& errors, const Rows& rows, std::size_t most) {
+  Spectrum spectrum;
+  spectrum.powers.resize(most + 1);
+  for (std::size_t waves = 1; waves <= most; ++waves)
+    spectrum.powers[waves] = power(errors, rows, static_cast<double>(waves));
+  spectrum.floor = median(std::vector(spectrum.powers.begin() + 1, spectrum.powers.end()));
+  return spectrum;
+}
+
+}  // namespace
+
 std::optional<RowWaves> find_row_waves(const FrameCells& cells, const CellFit& fit,
-                                       std::span<const std::size_t> strangers) {
+                                       std::span<const std::size_t> strangers, int threads) {
   const auto count = static_cast<std::size_t>(cells.rows);
   if (count < kFewestRows) return std::nullopt;
   const Rows rows(count);
   const std::vector<std::vector<double>> errors = mean_errors(cells, fit, rows, strangers);
-  const auto most = static_cast<std::size_t>(static_cast<double>(count) / kShortestPeriod);
-  std::vector<double> powers(most + 1);
-  for (std::size_t waves = 1; waves <= most; ++waves)
-    powers[waves] = power(errors, rows, static_cast<double>(waves));
-  const double floor = median(std::vector(powers.begin() + 1, powers.end()));
-
-  std::vector<std::size_t> order(powers.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return powers[a] > powers[b]; });
-  for (std::size_t i = 0; i < std::min(kMostTried, order.size()); ++i) {
-    const std::size_t waves = order[i];
-    const double rms = std::sqrt(powers[waves] / static_cast<double>(cells.count));
-    if (powers[waves] < kWaveFrom_sigmas * kWaveFrom_sigmas * floor || rms < kLeastWave) break;
-    if (static_cast<double>(waves) < kFewestWaves) continue;
-    if (alikeness(cells, fit, rows, static_cast<double>(waves), strangers) < kLeastAlike) continue;
+  const double most = static_cast<double>(count) / kShortestPeriod;
+  const Spectrum spectrum = spectrum_of(errors, rows, static_cast<std::size_t>(most));
+  for (const std::size_t number : spectrum.strongest()) {
+    const auto waves = static_cast<double>(number);
+    const double rms = std::sqrt(spectrum.powers[number] / static_cast<double>(cells.count));
+    if (spectrum.powers[number] < kWaveFrom_sigmas * kWaveFrom_sigmas * spectrum.floor || rms < kLeastWave)
+      break;
+    if (waves < kFewestWaves || alikeness(cells, fit, rows, waves, strangers) < kLeastAlike) continue;
 
     RowWaves found;
-    const double first = refined(errors, rows, static_cast<double>(waves));
+    const double first = refined(errors, rows, waves);
     found.period_rows = static_cast<double>(count) / first;
-    found.sigma = std::sqrt(floor / static_cast<double>(cells.count));
-    const std::vector<std::vector<double>> light = row_light(cells, fit, rows);
-    std::vector<std::vector<double>> logs(cells.count, std::vector<double>(count));
-    for (int n = 1; n <= kMostHarmonics && n * first <= static_cast<double>(most); ++n) {
-      // The errors alone tell whether there is such a wave: light has the cloth in it.
-      const double rms_of_errors =
-          std::sqrt(power(errors, rows, n * first) / static_cast<double>(cells.count));
-      if (n > 1 && rms_of_errors < std::max(kWaveFrom_sigmas * found.sigma, 0.25 * kLeastWave)) continue;
-      const std::vector<Complex> waves_of = harmonic(light, rows, n * first);
-      for (std::size_t k = 0; k < cells.count; ++k) {
-        if (n == 1) found.amplitude.push_back(std::abs(waves_of[k]));
-        const Complex step = std::polar(1.0, 2 * kPi * n * first / static_cast<double>(count));
-        Complex phase = 1;
-        for (std::size_t y = 0; y < count; ++y, phase *= step) logs[k][y] += (waves_of[k] * phase).real();
-      }
+    found.sigma = std::sqrt(spectrum.floor / static_cast<double>(cells.count));
+    std::vector<double> numbers = {first};
+    for (int n = 2; n <= kMostHarmonics && n * first <= most; ++n) {
+      const double own = std::sqrt(power(errors, rows, n * first) / static_cast<double>(cells.count));
+      if (own > std::max(kWaveFrom_sigmas * found.sigma, 0.25 * kLeastWave)) numbers.push_back(n * first);
     }
+    std::vector<bool> flickers;
+    for (const std::vector<double>& each : errors)
+      flickers.push_back(std::abs(rows.wave(each, first)) > kWaveFrom_sigmas * found.sigma);
+    Waves light(cells, rows, std::move(numbers), flickers, threads);
+    found.are_even = light.follow(fit);
     for (std::size_t k = 0; k < cells.count; ++k) {
-      std::vector<float>& gain = found.gain.emplace_back();
-      const double own = std::sqrt(std::norm(rows.wave(errors[k], first)));
-      if (own < kWaveFrom_sigmas * found.sigma) continue;
-      for (const double log : logs[k]) gain.push_back(static_cast<float>(std::exp(log)));
+      found.amplitude.push_back(flickers[k] ? light.amplitude(k) : 0);
+      found.gain.push_back(flickers[k] ? light.gain(k) : std::vector<float>());
     }
     return found;
   }

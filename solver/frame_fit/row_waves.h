@@ -17,8 +17,7 @@ struct RowWaves {
   double sigma = 0;               ///< of an amplitude, by waves of other periods
   /// By photograph: its light over its mean, row by row of cells. Empty of one that does not flicker.
   std::vector<std::vector<float>> gain;
-
-  double largest() const;
+  bool are_even = false;  ///< whether what is divided by them has the waves no more, but a half at most
 };
 
 /// Looks for one period in errors that are the same in all columns: a weave's differ from column to column.
@@ -26,6 +25,6 @@ struct RowWaves {
 /// and its sigma. Photographs that are `strangers` to the others are not looked at.
 inline constexpr double kLeastWave = 0.002;
 std::optional<RowWaves> find_row_waves(const FrameCells& cells, const CellFit& fit,
-                                       std::span<const std::size_t> strangers);
+                                       std::span<const std::size_t> strangers, int threads);
 
 }  // namespace weft::solver
