@@ -36,6 +36,8 @@ Result<void> read_as_raw(PictureMeaning& picture) {
   picture.transfer = Transfer::kLinear;
   picture.transfer_by = "a raw file";
   picture.orientation = 1;  // a body that looks straight down does not know how it is turned
+  for (const std::string& opcode : raw->opcodes)
+    picture.passed_over.push_back(opcode + ", which the file asks for: counts are taken without it");
   if (picture.model.empty()) picture.model = raw->shot.model;
   if (picture.exposure_us == 0) picture.exposure_us = raw->shot.exposure_us;
   if (picture.iso == 0) picture.iso = raw->shot.iso;

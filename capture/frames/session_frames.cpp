@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "capture/raw/decode_raw.h"
@@ -22,7 +23,7 @@ Result<RawInfo> header_of(const fs::path& file) {
   if (!is_linear_image(file)) return read_raw_info(file);
   Result<ImageFileInfo> info = read_linear_image_info(file);
   if (!info) return std::move(info).error();
-  return RawInfo{info->size, {}, {}};
+  return RawInfo{.size = info->size, .cfa = {}, .shot = {}};
 }
 
 Result<void> check_digest(const fs::path& file, const Shot& shot) {
@@ -62,6 +63,8 @@ Result<void> FrameHeaders::look_at(const Shot& shot) {
     size_ = info->size;
     cfa_ = info->cfa;
   }
+  for (const std::string& opcode : info->opcodes)
+    if (std::ranges::find(opcodes_, opcode) == opcodes_.end()) opcodes_.push_back(opcode);
   if (Result<void> ok = check_alike(shot, info->size, info->cfa, info->shot); !ok) return ok;
   return check_calibration(file, info->size, info->shot);
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/base/result.h"
 #include "core/image/image.h"
@@ -32,6 +33,8 @@ class FrameHeaders {
   /// What the frames have in common; of no meaning before one was looked at.
   bool is_raw() const { return is_raw_; }
   Size size() const { return size_; }
+  /// What some of them ask a developer to do, as of DngLayout::opcodes, each once.
+  const std::vector<std::string>& opcodes() const { return opcodes_; }
 
  private:
   Result<void> check_alike(const Shot& shot, Size size, const CfaPattern& cfa,
@@ -46,6 +49,7 @@ class FrameHeaders {
   bool is_raw_ = true;
   Size size_;
   CfaPattern cfa_;
+  std::vector<std::string> opcodes_;
 };
 
 /// The frame of a shot, decoded after a look at its digest; `size` is that of its header. kBadData for bytes

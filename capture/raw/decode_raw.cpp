@@ -7,9 +7,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <span>
 #include <utility>
 
 #include "capture/raw/opened_raw.h"
+#include "capture/raw/plain_counts.h"
 
 namespace weft::capture {
 namespace {
@@ -68,7 +71,7 @@ Result<Cell> black_levels(LibRaw& libraw, const std::string& where) {
 /// Sets black and white: a DNG's own, which may have fractions; of other files those of LibRaw.
 Result<void> set_levels(RawFrame& frame, const OpenedRaw& raw, const std::string& where) {
   if (raw.dng) {
-    frame.black = raw.dng->black;
+    frame.black = raw.dng->black.cell();
     frame.white = raw.dng->white;
     return {};
   }
@@ -84,21 +87,50 @@ Result<void> set_levels(RawFrame& frame, const OpenedRaw& raw, const std::string
   return {};
 }
 
-/// Unpacks the counts, all of which must be there.
+Error truncated(const std::string& where) {
+  return {ErrorKind::kBadData, "raw frame is truncated", where, "the file ends before its data do",
+          "copy the file again"};
+}
+
+/// LibRaw unpacks the counts, all of which must be there.
 Result<void> unpack(OpenedRaw& raw, const std::string& where) {
   raw.file->missing_bytes = 0;
   const int code = raw.libraw->unpack();
   if (code == LIBRAW_UNSUFFICIENT_MEMORY) return out_of_memory(where);
   const bool failed = code != LIBRAW_SUCCESS || raw.libraw->error_count() != 0;
-  if (raw.file->missing_bytes > (failed ? 0 : kReadAhead))
-    return Error{ErrorKind::kBadData, "raw frame is truncated", where, "the file ends before its data do",
-                 "copy the file again"};
+  if (raw.file->missing_bytes > (failed ? 0 : kReadAhead)) return truncated(where);
   if (failed)
     return Error{ErrorKind::kBadData, "raw frame cannot be decoded", where,
                  fmt::format("its data are damaged, or packed in a way that LibRaw {} does not read",
                              LibRaw::version()),
                  "copy the file again, or convert it to DNG"};
   return {};
+}
+
+Result<void> read_by_libraw(OpenedRaw& raw, const std::string& where, View<std::uint16_t> out) {
+  if (auto done = unpack(raw, where); !done) return std::move(done).error();
+  const libraw_rawdata_t& unpacked = raw.libraw->imgdata.rawdata;
+  const Rect& active = raw.active;
+  if (unpacked.raw_image == nullptr || active.x1 > unpacked.sizes.raw_width ||
+      active.y1 > unpacked.sizes.raw_height)
+    return distrust("LibRaw unpacks it to something other than a mosaic", where);
+  const std::size_t stride = unpacked.sizes.raw_pitch / sizeof(std::uint16_t);
+  for (int y = active.y0; y < active.y1; ++y) {
+    const std::uint16_t* const row = unpacked.raw_image + static_cast<std::size_t>(y) * stride;
+    std::copy(row + active.x0, row + active.x1, out.row(y - active.y0));
+  }
+  return {};
+}
+
+Result<void> read_counts(OpenedRaw& raw, const std::string& where, View<std::uint16_t> out) {
+  if (!raw.dng || !raw.dng->plain) return read_by_libraw(raw, where, out);
+  const auto read_at = [&raw](std::uint64_t offset, std::span<std::uint8_t> bytes) {
+    return raw.file->seek(static_cast<INT64>(offset), SEEK_SET) == 0 &&
+           raw.file->read(bytes.data(), 1, bytes.size()) == static_cast<int>(bytes.size());
+  };
+  const DngLayout& dng = *raw.dng;
+  return read_plain_counts(*dng.plain, dng.stored, dng.active, read_at, out) ? Result<void>()
+                                                                             : truncated(where);
 }
 
 }  // namespace
@@ -113,21 +145,10 @@ Result<RawFrame> decode_raw(const std::filesystem::path& file, const DecodeExpec
   if (auto same = check("camera model", expected.model, info.shot.model, where); !same)
     return std::move(same).error();
 
-  LibRaw& libraw = *raw->libraw;
-  if (auto done = unpack(*raw, where); !done) return std::move(done).error();
-  const libraw_rawdata_t& unpacked = libraw.imgdata.rawdata;
-  const Rect& active = raw->active;
-  if (unpacked.raw_image == nullptr || active.x1 > unpacked.sizes.raw_width ||
-      active.y1 > unpacked.sizes.raw_height)
-    return distrust("LibRaw unpacks it to something other than a mosaic", where);
-
   RawFrame frame = {Image<std::uint16_t>(info.size), info.cfa, {}, 0, std::move(info.shot)};
+  if (auto read = read_counts(*raw, where, frame.counts.plane()); !read) return std::move(read).error();
   if (auto set = set_levels(frame, *raw, where); !set) return std::move(set).error();
-  const std::size_t stride = unpacked.sizes.raw_pitch / sizeof(std::uint16_t);
-  for (int y = active.y0; y < active.y1; ++y) {
-    const std::uint16_t* const row = unpacked.raw_image + static_cast<std::size_t>(y) * stride;
-    std::copy(row + active.x0, row + active.x1, frame.counts.plane().row(y - active.y0));
-  }
+  if (raw->dng) raw->dng->black.level(frame.counts.plane(), frame.white);
   return frame;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "capture/raw/bayer.h"
+#include "capture/raw/dng_opcodes.h"
 
 namespace weft::capture {
 namespace {
@@ -29,6 +31,7 @@ enum Tag : std::uint16_t {
   kFillOrder = 266,
   kStripOffsets = 273,
   kSamplesPerPixel = 277,
+  kRowsPerStrip = 278,
   kStripByteCounts = 279,
   kTileWidth = 322,
   kTileLength = 323,
@@ -38,6 +41,7 @@ enum Tag : std::uint16_t {
   kCfaRepeatPatternDim = 33421,
   kCfaPattern = 33422,
   kCfaLayout = 50711,
+  kLinearizationTable = 50712,
   kBlackLevelRepeatDim = 50713,
   kBlackLevel = 50714,
   kBlackLevelDeltaH = 50715,
@@ -82,8 +86,9 @@ class LayoutReader {
 
   Result<DngLayout> read() {
     for (const auto step : {&LayoutReader::read_sizes, &LayoutReader::read_mosaic, &LayoutReader::read_data,
-                            &LayoutReader::read_levels})
+                            &LayoutReader::read_white, &LayoutReader::read_black})
       if (auto done = (this->*step)(); !done) return std::move(done).error();
+    layout_.opcodes = opcodes_of(tiff_, directory_);
     return layout_;
   }
 
@@ -149,29 +154,57 @@ class LayoutReader {
     layout_.data_at = tiled ? tiles->at : segments[0].at;
 
     const double compression = number(kCompression, kUncompressed);
-    if (compression == kUncompressed) return check_uncompressed(segments, tiled);
+    if (compression == kUncompressed) return check_uncompressed(std::move(segments), tiled);
     if (compression == kLosslessJpeg) return check_lossless_jpeg(segments, tiled);
     return refusal(fmt::format("its compression {} is not read", compression),
                    "convert to DNG uncompressed or with lossless JPEG");
   }
 
-  Result<void> check_uncompressed(const std::vector<Segment>& strips, bool tiled) {
+  /// The sides of a piece of the data.
+  Size piece_size(bool tiled) const {
+    const double width = tiled ? number(kTileWidth, 0) : layout_.stored.width;
+    const double height = tiled
+                              ? number(kTileLength, 0)
+                              : std::min<double>(number(kRowsPerStrip, kLongestSide), layout_.stored.height);
+    const bool is_possible = width >= 1 && width <= kLongestSide && height >= 1 && height <= kLongestSide;
+    return is_possible ? Size{static_cast<int>(width), static_cast<int>(height)} : Size{};
+  }
+
+  /// Strips that follow one another are one, whatever they say of their rows.
+  static void join(std::vector<Segment>& strips) {
+    for (std::size_t i = 1; i < strips.size(); ++i)
+      if (strips[i].at != strips[i - 1].at + strips[i - 1].bytes) return;
+    strips = {{strips.front().at, strips.back().at + strips.back().bytes - strips.front().at}};
+  }
+
+  Result<void> check_uncompressed(std::vector<Segment> pieces, bool tiled) {
     const double bits = number(kBitsPerSample, 1);
     if (!(bits >= 8 && bits <= 16 && bits == std::floor(bits)))
       return refusal(fmt::format("its uncompressed counts have {} bits, not 8 to 16", bits));
     if (number(kFillOrder, 1) != 1) return refusal("the bits of its bytes are in reverse order");
-    if (tiled) return refusal("its counts are uncompressed tiles", "convert to DNG with strips");
-    std::uint64_t end = layout_.data_at;
-    for (const Segment& strip : strips) {
-      if (strip.at != end) return refusal("its strips do not follow one another");
-      end += strip.bytes;
-    }
+    if (!tiled) join(pieces);
     const auto [width, height] = layout_.stored;
-    const std::uint64_t row_bytes = (static_cast<std::uint64_t>(width) * static_cast<unsigned>(bits) + 7) / 8;
-    const std::uint64_t expected = row_bytes * static_cast<unsigned>(height);
-    if (end - layout_.data_at != expected)
-      return refusal(fmt::format("its {} x {} counts of {} bits take {} bytes, it holds {}", width, height,
-                                 bits, expected, end - layout_.data_at));
+    Size piece = pieces.size() == 1 && !tiled ? layout_.stored : piece_size(tiled);
+    if (piece.pixels() == 0) return refusal("its strips or tiles have no size");
+    const int columns = (width + piece.width - 1) / piece.width;
+    const int rows = (height + piece.height - 1) / piece.height;
+    if (std::cmp_not_equal(pieces.size(), std::int64_t{columns} * rows))
+      return refusal(
+          fmt::format("it has {} strips or tiles, not {}", pieces.size(), std::int64_t{columns} * rows));
+    const std::uint64_t row_bytes =
+        (static_cast<std::uint64_t>(piece.width) * static_cast<unsigned>(bits) + 7) / 8;
+    PlainCounts plain = {piece, {}, static_cast<int>(bits), tiff_.is_big_endian(), {}};
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const int top = static_cast<int>(i) / columns * piece.height;
+      const int lines = tiled ? piece.height : std::min(piece.height, height - top);
+      if (pieces[i].bytes != row_bytes * static_cast<unsigned>(lines))
+        return refusal(fmt::format("its {} x {} counts of {} bits take {} bytes, it holds {}", piece.width,
+                                   lines, bits, row_bytes * static_cast<unsigned>(lines), pieces[i].bytes));
+      plain.at.push_back(pieces[i].at);
+    }
+    for (const double value : numbers(kLinearizationTable))
+      plain.table.push_back(static_cast<std::uint16_t>(std::clamp(value, 0.0, 65535.0)));
+    layout_.plain = std::move(plain);
     return {};
   }
 
@@ -179,9 +212,9 @@ class LayoutReader {
     const Size size = layout_.stored;
     double width = size.width, height = size.height, expected = 1;
     if (tiled) {
-      width = number(kTileWidth, 0), height = number(kTileLength, 0);
-      if (!(width >= 1 && width <= kLongestSide && height >= 1 && height <= kLongestSide))
-        return refusal(fmt::format("its tiles have {} x {} pixels", width, height));
+      const Size tile = piece_size(tiled);
+      if (tile.pixels() == 0) return refusal("its tiles have no size");
+      width = tile.width, height = tile.height;
       expected = std::ceil(size.width / width) * std::ceil(size.height / height);
       if (expected == 1) return refusal("it is one tile", "convert to DNG with strips or smaller tiles");
     }
@@ -195,38 +228,51 @@ class LayoutReader {
     return {};
   }
 
-  Result<void> read_levels() {
-    for (const Tag tag : {kBlackLevelDeltaH, kBlackLevelDeltaV})
-      if (const auto deltas = numbers(tag, {0});
-          deltas.empty() || deltas != std::vector<double>(deltas.size()))
-        return refusal("its black level changes from row to row or column to column");
+  /// What the largest code of so many bits stands for, where nothing is said.
+  double largest_count() const {
+    const double code = std::exp2(number(kBitsPerSample, 1)) - 1;
+    const std::vector<double> table = numbers(kLinearizationTable);
+    if (table.empty()) return code;
+    return table[std::min(table.size() - 1, static_cast<std::size_t>(std::max(0.0, code)))];
+  }
 
-    const double white = number(kWhiteLevel, 0);
-    if (!(white > 0 && white <= 65535))
-      return refusal(white == 0 ? "it has no white level"
-                                : fmt::format("its white level is {} counts", white));
+  Result<void> read_white() {
+    const double white = number(kWhiteLevel, largest_count());
+    if (!(white > 0 && white <= 65535)) return refusal(fmt::format("its white level is {} counts", white));
     layout_.white = static_cast<float>(white);
+    return {};
+  }
 
+  /// Differences along one side of the active area; empty where there are none.
+  Result<std::vector<double>> deltas(Tag tag, int length) const {
+    std::vector<double> found = numbers(tag, {0});
+    if (found.empty()) return refusal("its black level's changes along rows or columns cannot be read");
+    if (found == std::vector<double>(found.size())) return std::vector<double>();
+    if (std::cmp_not_equal(found.size(), length))
+      return refusal(
+          fmt::format("its black level changes along {} rows or columns, it has {}", found.size(), length));
+    return found;
+  }
+
+  Result<void> read_black() {
     const std::vector<double> repeat = numbers(kBlackLevelRepeatDim, {1, 1});
-    const std::vector<double> black = numbers(kBlackLevel);
-    if (black.empty()) return refusal("it has no black level");
-    if (repeat.size() != 2 || !(repeat[0] >= 1 && repeat[1] >= 1) ||
-        static_cast<double>(black.size()) != repeat[0] * repeat[1])
+    const bool is_said = Tiff::find(directory_, kBlackLevel) != nullptr;
+    const std::vector<double> black = is_said ? numbers(kBlackLevel) : std::vector<double>{0};
+    if (black.empty()) return refusal("its black level cannot be read");
+    const bool is_pattern = repeat.size() == 2 && repeat[0] >= 1 && repeat[1] >= 1;
+    if (is_said && !(is_pattern && static_cast<double>(black.size()) == repeat[0] * repeat[1]))
       return refusal(fmt::format("its {} black levels are no pattern", black.size()));
-    const auto rows = static_cast<std::size_t>(repeat[0]), columns = static_cast<std::size_t>(repeat[1]);
-    const auto black_at = [&](std::size_t x, std::size_t y) {
-      return black[y % rows * columns + x % columns];
-    };
-    for (std::size_t y = 0; y < 2 * rows; ++y)
-      for (std::size_t x = 0; x < 2 * columns; ++x) {
-        if (black_at(x, y) != black_at(x % 2, y % 2))
-          return refusal(
-              fmt::format("its black levels repeat every {} x {} photosites, not 2 x 2", columns, rows));
-        const auto level = static_cast<float>(black_at(x, y));
+    Result<std::vector<double>> by_column = deltas(kBlackLevelDeltaH, layout_.active.width());
+    if (!by_column) return std::move(by_column).error();
+    Result<std::vector<double>> by_row = deltas(kBlackLevelDeltaV, layout_.active.height());
+    if (!by_row) return std::move(by_row).error();
+    const std::size_t columns = is_said ? static_cast<std::size_t>(repeat[1]) : 1;
+    layout_.black = DngBlack(black, columns, *std::move(by_column), *std::move(by_row));
+    for (const auto& row : layout_.black.cell())
+      for (const float level : row)
         if (!(level >= 0 && level < layout_.white))
-          return refusal(fmt::format("its black level is {} counts and its white level {}", level, white));
-        layout_.black[y % 2][x % 2] = level;
-      }
+          return refusal(
+              fmt::format("its black level is {} counts and its white level {}", level, layout_.white));
     return {};
   }
 

@@ -138,10 +138,11 @@ Result<void> describe_dng(OpenedRaw& raw, const std::string& where) {
                                 layout.stored.height, sizes.raw_width, sizes.raw_height),
                     where);
   const auto data_at = raw.libraw->get_internal_data_pointer()->unpacker_data.data_offset;
-  if (std::cmp_not_equal(layout.data_at, data_at))
+  if (!layout.plain && std::cmp_not_equal(layout.data_at, data_at))
     return distrust(fmt::format("its tags put the data at byte {}, LibRaw at {}", layout.data_at, data_at),
                     where);
   raw.info.cfa = layout.cfa;
+  raw.info.opcodes = layout.opcodes;
   raw.active = layout.active;
   return {};
 }

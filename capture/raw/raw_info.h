@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/base/result.h"
 #include "core/image/image.h"
@@ -14,6 +16,7 @@ struct RawInfo {
   Size size;       ///< of the active area
   CfaPattern cfa;  ///< of the active area's (0, 0)
   ShotMetadata shot;
+  std::vector<std::string> opcodes = {};  ///< as of DngLayout
 };
 
 /// Opens a raw file and decodes no pixels: a millisecond a file, to look over a session before an hour of

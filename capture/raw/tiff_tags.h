@@ -32,6 +32,7 @@ class Tiff {
   static std::optional<Tiff> read(ReadAt read_at);
 
   const std::vector<TiffDirectory>& directories() const { return directories_; }
+  bool is_big_endian() const { return big_endian_; }
   bool read_at(std::uint64_t offset, std::span<std::uint8_t> bytes) const { return read_at_(offset, bytes); }
 
   /// Null where the tag is absent.

@@ -9,6 +9,8 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "capture/frames/session_frames.h"
@@ -17,6 +19,7 @@
 #include "core/image/page_out.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/linear_image.h"
+#include "core/rig/filter_phase.h"
 #include "solve/conditions/conditions.h"
 #include "solve/gloss/sample_gloss.h"
 #include "solve/input/photo_mask.h"
@@ -38,6 +41,30 @@ Result<void> check_levels(const RawFrame& frame, const RawFrame& first, const fs
                   frame.black[0][0], frame.black[0][1], frame.black[1][0], frame.black[1][1], frame.white,
                   first.black[0][0], first.black[0][1], first.black[1][0], first.black[1][1], first.white),
       "scan the cloth again with fixed camera settings"};
+}
+
+// A picture that was written a row or a column off has its colours behind other filters than its file says.
+Result<void> check_filters(std::span<const RawFrame> lit, const SolvePlan& plan, int threads) {
+  std::vector<std::optional<SiteLight>> light(lit.size());
+  parallel_for(lit.size(), threads, [&](std::size_t k, int) { light[k] = site_light(lit[k]); });
+  const std::vector<FilterShift> shifts = filter_shifts(light, lit.front().cfa);
+  const auto off =
+      std::ranges::find_if(shifts, [](FilterShift shift) { return shift != FilterShift::kNone; });
+  if (off == shifts.end()) return {};
+  const Shot& shot = plan.lit[static_cast<std::size_t>(off - shifts.begin())];
+  if (*off == FilterShift::kRowOrColumn) {
+    return Error{
+        ErrorKind::kBadData, "the colour filters are not where the files say",
+        plan.session.path_of(shot).string(),
+        "the two greens of their pattern differ, and red and blue are alike: it lies one row or column off",
+        "convert the camera's raw files again, with their active area as it is"};
+  }
+  return Error{ErrorKind::kBadData, "frame does not belong to its session",
+               plan.session.path_of(shot).string(),
+               fmt::format("the filters of LED {}'s picture lie one {} off against the other frames",
+                           shot.led, *off == FilterShift::kRow ? "row" : "column"),
+               fmt::format("scan that LED again, or leave it out: weft library tag {} --set left_out={}",
+                           plan.session_name, shot.index)};
 }
 
 // Moves the first `count` of `frames` away.
@@ -119,6 +146,7 @@ Result<void> read_mosaics(const SolvePlan& plan, const JobContext& context, Phot
       return ok;
   }
   std::vector<RawFrame> lit = take(*frames, plan.lit.size());
+  if (Result<void> ok = check_filters(lit, plan, context.threads); !ok) return ok;
   std::optional<RawFrame> dark;
   if (plan.dark) dark = std::move(take(*frames, 1).front());
   const Response response =

@@ -2,6 +2,7 @@
 #include "solve/input/session_input.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -199,12 +200,16 @@ Error reads_raws(const std::string& where) {
 }
 
 // The size that all frames have.
-Result<Size> look_at_headers(const SolvePlan& plan) {
+Result<Size> look_at_headers(SolvePlan& plan) {
   capture::FrameHeaders headers(
       plan.session, plan.calibration,
       "name the calibration of this rig with --calibration, or calibrate the rig as it is now");
   for (const Shot& shot : plan.frames()) {
     if (Result<void> ok = headers.look_at(shot); !ok) return std::move(ok).error();
+  }
+  if (!headers.opcodes().empty()) {
+    plan.assumed.push_back(fmt::format("what the raws ask for is not done, as in the calibration's: {}",
+                                       fmt::join(headers.opcodes(), ", ")));
   }
   return headers.size();
 }

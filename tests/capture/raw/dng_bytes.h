@@ -86,6 +86,12 @@ class DngBytes {
     return *this;
   }
 
+  bool has(std::uint16_t tag) const {
+    const std::size_t directory = number(4, 4);
+    for (std::size_t i = 0; i < number(directory, 2); ++i)
+      if (number(directory + 2 + 12 * i, 2) == tag) return true;
+    return false;
+  }
   std::uint32_t get(std::uint16_t tag) const { return number(value_at(tag), 4); }
 
   std::size_t value_at(std::uint16_t tag) const { return value_of_entry(entry(tag)); }
@@ -121,7 +127,7 @@ class DngBytes {
   /// 16 bits. What is left takes no more changes.
   DngBytes& make_big_endian() {
     if (get(258) == 16)
-      for (std::size_t at = get(273); at < bytes.size(); at += 2) reverse(at, 2);
+      for (std::size_t at = get(has(324) ? 324 : 273); at < bytes.size(); at += 2) reverse(at, 2);
     reverse_directory(get(34665));
     reverse_directory(number(4, 4));
     reverse(4, 4);

@@ -11,9 +11,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "capture/raw/decode_raw.h"
+#include "capture/raw/raw_info.h"
 #include "tests/capture/raw/dng_bytes.h"
 
 namespace weft::capture {
@@ -153,7 +155,11 @@ TEST(DngLayout, TakesStripsThatFollowOneAnother) {
   dng.set(279, {arrays_at + 8}).retag(279, 279, 4, 2);
   dng.set(273, {strip_at, strip_at + 1200, 1200, 1200});
   expect_same_counts(dng, truth);
-  expect_refusal(dng.set(273, {strip_at + 1200, strip_at}), "do not follow one another");
+  RawFrame exchanged = sample_frame({40, 30});
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 40; ++x) exchanged.counts(x, y) = truth.counts(x, (y + 15) % 30);
+  expect_same_counts(dng.set(273, {strip_at + 1200, strip_at}), exchanged);
+  expect_refusal(dng.set(278, {10}), "2 strips or tiles, not 3");
 }
 
 TEST(DngLayout, RefusesDataThatAreNotWhatCompressionAndBitsSay) {
@@ -201,6 +207,60 @@ TEST(DngLayout, TakesCountsOf16BitsInBothByteOrders) {
   const RawFrame truth = frame_of_bits({23, 29}, 16);
   expect_same_counts(DngBytes(truth), truth);
   expect_same_counts(DngBytes(truth).make_big_endian(), truth);
+}
+
+/// The counts of a DNG in uncompressed tiles, which are padded by counts of 77 and lie last to first.
+DngBytes plain_tiles(const RawFrame& frame, Size tile, int bits) {
+  DngBytes dng(frame);
+  dng.bytes.resize(dng.get(273));
+  std::vector<std::vector<std::uint8_t>> tiles;
+  for (int y0 = 0; y0 < frame.counts.height(); y0 += tile.height)
+    for (int x0 = 0; x0 < frame.counts.width(); x0 += tile.width) {
+      RawFrame part = sample_frame(tile);
+      for (int y = 0; y < tile.height; ++y)
+        for (int x = 0; x < tile.width; ++x) {
+          const bool is_inside = x0 + x < frame.counts.width() && y0 + y < frame.counts.height();
+          part.counts(x, y) = is_inside ? frame.counts(x0 + x, y0 + y) : 77;
+        }
+      DngBytes alone(part);
+      if (bits < 16) alone.pack(bits);
+      const auto data_at = alone.get(273);
+      tiles.emplace_back(alone.bytes.begin() + data_at, alone.bytes.end());
+    }
+  std::vector<std::uint32_t> offsets(tiles.size());
+  for (std::size_t i = tiles.size(); i-- > 0;) {
+    offsets[i] = static_cast<std::uint32_t>(dng.bytes.size());
+    dng.bytes.insert(dng.bytes.end(), tiles[i].begin(), tiles[i].end());
+  }
+  const auto count = static_cast<std::uint32_t>(tiles.size());
+  const auto lengths_at = static_cast<std::uint32_t>(dng.bytes.size());
+  for (const auto& each : tiles) dng.append(static_cast<std::uint32_t>(each.size()), 4);
+  for (const std::uint32_t offset : offsets) dng.append(offset, 4);
+  dng.set(258, {static_cast<std::uint32_t>(bits)}, 2).remove(278);
+  dng.retag(254, 322, 4, 1).set(322, {static_cast<std::uint32_t>(tile.width)});
+  dng.retag(50778, 323, 4, 1).set(323, {static_cast<std::uint32_t>(tile.height)});
+  dng.retag(273, 324, 4, count).retag(279, 325, 4, count);
+  dng.point(324, count == 1 ? offsets[0] : lengths_at + 4 * count);
+  return dng.point(325, count == 1 ? static_cast<std::uint32_t>(tiles[0].size()) : lengths_at);
+}
+
+TEST(DngLayout, TakesUncompressedTilesThatDoNotDivideTheFrame) {
+  for (const int bits : {10, 12, 14, 16})
+    for (const Size tile : {Size{16, 16}, Size{17, 9}, Size{48, 32}}) {
+      RawFrame truth = sample_frame({41, 30});
+      for (int y = 0; y < 30; ++y)
+        for (int x = 0; x < 41; ++x)
+          truth.counts(x, y) = static_cast<std::uint16_t>(truth.counts(x, y) & ((1 << bits) - 1));
+      expect_same_counts(plain_tiles(truth, tile, bits), truth);
+    }
+  const RawFrame truth = sample_frame({41, 30});
+  DngBytes cut = plain_tiles(truth, {16, 16}, 16);
+  expect_refusal(cut.set(323, {8}), "6 strips or tiles, not 12");
+}
+
+TEST(DngLayout, TakesAnUncompressedTileOfBigEndianCounts) {
+  const RawFrame truth = frame_of_bits({23, 29}, 16);
+  expect_same_counts(plain_tiles(truth, {32, 32}, 16).make_big_endian(), truth);
 }
 
 TEST(DngLayout, TakesPackedCountsInOneStripARow) {
@@ -283,31 +343,91 @@ TEST(DngLayout, RefusesCountsThatAreNotIntegersOfOneMosaic) {
   expect_refusal(DngBytes(good).retag(284, 50711, 3, 1).set(50711, {2}, 2), "not a Bayer mosaic");
 }
 
-TEST(DngLayout, RefusesMissingOrImpossibleWhiteLevels) {
+RawFrame decoded(const DngBytes& dng) {
+  auto frame = decode_raw(dng.save("levels.dng"));
+  EXPECT_TRUE(frame.has_value()) << frame.error().message();
+  return frame ? std::move(*frame) : RawFrame();
+}
+
+TEST(DngLayout, TakesLevelsThatAreNotSaidForWhatTheSpecificationSays) {
+  const RawFrame frame = frame_of_bits({23, 22}, 12);
+  DngBytes dng(frame);
+  dng.pack(12);
+  EXPECT_EQ(decoded(DngBytes(dng).remove(50717)).white, 4095);
+  EXPECT_EQ(decoded(DngBytes(dng).remove(50714)).black[0][0], 0);
+  EXPECT_EQ(decoded(DngBytes(dng).remove(50714).remove(50713)).black[1][1], 0);
+  const auto table_at = static_cast<std::uint32_t>(dng.bytes.size());
+  for (std::uint32_t i = 0; i < 4096; ++i) dng.append(3 * i + 100, 2);
+  dng.retag(284, 50712, 3, 4096).point(50712, table_at);
+  EXPECT_EQ(decoded(dng.remove(50717)).white, 3 * 4095 + 100) << "what the largest code stands for";
+}
+
+TEST(DngLayout, RefusesImpossibleWhiteLevels) {
   const DngBytes good;
-  expect_refusal(DngBytes(good).remove(50717), "no white level");
-  expect_refusal(DngBytes(good).set(50717, {0}), "no white level");
+  expect_refusal(DngBytes(good).set(50717, {0}), "white level is 0");
   expect_refusal(DngBytes(good).set(50717, {65536}), "white level is 65536");
   expect_refusal(DngBytes(good).set(50717, {600}), "black level is 600 counts and its white level 600");
 }
 
-TEST(DngLayout, RefusesMissingOrImpossibleBlackLevels) {
+TEST(DngLayout, RefusesImpossibleBlackLevels) {
   const DngBytes good;
-  expect_refusal(DngBytes(good).remove(50714), "no black level");
-  expect_refusal(DngBytes(good).set(50714, {1, 0}), "no black level");
+  expect_refusal(DngBytes(good).set(50714, {1, 0}), "black level cannot be read");
   expect_refusal(DngBytes(good).set(50713, {2, 2}, 2), "1 black levels are no pattern");
-  expect_refusal(DngBytes(good).retag(50728, 50715, 10, 3), "changes from row to row or column to column");
+  expect_refusal(DngBytes(good).retag(50728, 50715, 10, 3), "changes along 3 rows or columns, it has 40");
 }
 
-TEST(DngLayout, TakesABlackPatternOnlyIfItRepeatsWithTheCell) {
+TEST(DngLayout, TakesOffWhatBlackLevelsDifferFromTheCell) {
   // Four by two levels in place of the colour matrix.
-  DngBytes dng(sample_frame({40, 30}));
+  const RawFrame truth = sample_frame({40, 30});
+  DngBytes dng(truth);
   dng.remove(50714).retag(50721, 50714, 4, 8).set(50713, {4, 2}, 2);
   dng.set(50714, {600, 601, 602, 603, 600, 601, 602, 603});
-  const auto frame = decode_raw(dng.save("black_pattern.dng"));
-  ASSERT_TRUE(frame.has_value()) << frame.error().message();
-  EXPECT_EQ(frame->black, (std::array<std::array<float, 2>, 2>{{{600, 601}, {602, 603}}}));
-  expect_refusal(dng.set(50714, {600, 601, 602, 603, 600, 601, 602, 604}), "not 2 x 2");
+  RawFrame frame = decoded(dng);
+  using Cell = std::array<std::array<float, 2>, 2>;
+  EXPECT_EQ(frame.black, (Cell{{{600, 601}, {602, 603}}}));
+  EXPECT_EQ(frame.counts(3, 3), truth.counts(3, 3));
+  frame = decoded(dng.set(50714, {600, 601, 602, 603, 700, 601, 602, 603}));
+  EXPECT_EQ(frame.black, (Cell{{{650, 601}, {602, 603}}}));
+  EXPECT_EQ(frame.counts(2, 4), truth.counts(2, 4) + 50) << "of 600, where the cell says 650";
+  EXPECT_EQ(frame.counts(2, 6), truth.counts(2, 6) - 50) << "of 700";
+  EXPECT_EQ(frame.counts(3, 6), truth.counts(3, 6));
+}
+
+TEST(DngLayout, TakesOffBlackThatChangesAlongRowsAndColumnsAndLeavesFullCountsFull) {
+  RawFrame truth = sample_frame({40, 32});
+  truth.counts(9, 20) = 15520;
+  for (const std::uint16_t tag : {std::uint16_t{50715}, std::uint16_t{50716}}) {
+    DngBytes dng(truth);
+    const auto length = tag == 50715 ? 40u : 32u;
+    const auto deltas_at = static_cast<std::uint32_t>(dng.bytes.size());
+    for (std::uint32_t i = 0; i < length; ++i) dng.append(i < length / 2 ? 0 : 80, 4).append(1, 4);
+    const RawFrame frame = decoded(dng.retag(50728, tag, 10, length).point(tag, deltas_at));
+    EXPECT_EQ(frame.black[1][0], 640) << "600, and half of the rows or columns have 80 more";
+    EXPECT_EQ(frame.counts(1, 2), truth.counts(1, 2) + 40);
+    EXPECT_EQ(frame.counts(38, 28), truth.counts(38, 28) - 40);
+    EXPECT_EQ(frame.counts(9, 20), 15520);
+  }
+}
+
+TEST(RawInfo, NamesWhatADngAsksADeveloperToDo) {
+  const auto with = [](std::uint32_t id, std::uint32_t flags, std::uint32_t gain) {
+    DngBytes dng;
+    const auto list_at = static_cast<std::uint32_t>(dng.bytes.size());
+    const auto big_endian = [&dng](std::uint32_t n) {
+      dng.append((n & 255) << 24 | (n & 0xff00) << 8 | (n >> 8 & 0xff00) | n >> 24, 4);
+    };
+    for (const std::uint32_t n : {1u, id, 0x01030000u, flags, 80u}) big_endian(n);
+    for (int i = 0; i < 19; ++i) big_endian(1);
+    big_endian(gain);
+    dng.retag(284, 51009, 7, 4 + 16 + 80).point(51009, list_at);
+    return read_raw_info(dng.save("opcodes.dng"))->opcodes;
+  };
+  constexpr std::uint32_t kOne = 0x3f800000, kTwo = 0x40000000;
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(with(9, 0, kTwo), Names{"GainMap"});
+  EXPECT_EQ(with(9, 0, kOne), Names{}) << "gains of 1 change nothing";
+  EXPECT_EQ(with(1, 1, kOne), Names{"WarpRectilinear (optional)"});
+  EXPECT_EQ(with(99, 2, kOne), Names{"opcode 99"});
 }
 
 TEST(DngLayout, RefusesSizesThatContradictTheData) {
