@@ -19,7 +19,7 @@ Levels levels_of(const RawFrame& frame) {
     for (std::size_t x = 0; x < 2; ++x) {
       const double black = static_cast<double>(frame.black[y][x]);
       levels.black[y][x] = black;
-      levels.full_from[y][x] = black + kSaturatedFrom * (static_cast<double>(frame.white) - black);
+      levels.full_from[y][x] = saturated_from(frame, static_cast<int>(x), static_cast<int>(y));
       mean += black / 4;
     }
   }

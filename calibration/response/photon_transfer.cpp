@@ -101,7 +101,9 @@ std::vector<TransferPoint> transfer_points(const RawFrame& first, const RawFrame
   double mean_black = 0;
   for (const auto& row : first.black) mean_black += static_cast<double>(row[0] + row[1]) / 4;
   const double white = static_cast<double>(first.white), range = white - mean_black;
-  const double full = mean_black + kSaturatedFrom * range;
+  std::array<double, 4> full;  // by place in the filter cell
+  for (int place = 0; place < 4; ++place)
+    full[static_cast<std::size_t>(place)] = saturated_from(first, place & 1, place >> 1);
   std::vector<TransferPoint> points;
   for (int block_y = 0; block_y < size.height / kResponseBlock; ++block_y) {
     for (int block_x = 0; block_x < size.width / kResponseBlock; ++block_x) {
@@ -111,9 +113,10 @@ std::vector<TransferPoint> transfer_points(const RawFrame& first, const RawFrame
         for (int x = block_x * kResponseBlock; x < (block_x + 1) * kResponseBlock; ++x) {
           if (!bad.empty() && bad(x, y) != 0) continue;
           const double a = first.counts(x, y), b = second.counts(x, y), d = a - b;
+          const auto place = static_cast<std::size_t>(2 * (y & 1) + (x & 1));
           clipped[static_cast<std::size_t>(first.cfa.channel_at(x, y))] |=
-              a == 0 || b == 0 || a >= full || b >= full;
-          PairSums& s = sums[static_cast<std::size_t>(2 * (y & 1) + (x & 1))];
+              a == 0 || b == 0 || a >= full[place] || b >= full[place];
+          PairSums& s = sums[place];
           s.mean += (a + b) / 2;
           s.difference += d;
           s.square += d * d;

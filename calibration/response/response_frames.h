@@ -30,6 +30,8 @@ struct ResponseFrames {
   CfaPattern cfa;
   std::array<std::array<float, 2>, 2> file_black = {};
   double file_white = 0;
+  std::array<double, 3> dark_rgb = {};  ///< counts of the dark shots, medians; 0 without them
+  std::array<float, 3> full_rgb = {};   ///< counts at which each channel stops; 0: it does not
   std::map<std::vector<int>, std::vector<ExposureFrames>> by_leds;  ///< by rising exposure; {} is dark
   std::vector<std::filesystem::path> scale;                         ///< frames of the grey scale
   std::vector<std::filesystem::path> trap;                          ///< frames of a black trap in white paper

@@ -105,6 +105,17 @@ Result<std::optional<TrapReading>> read_trap(const ResponseFrames& frames, const
   return std::optional<TrapReading>(std::move(*trap));
 }
 
+CountLevels levels_of(const ResponseFrames& frames) {
+  CountLevels levels = {.white = frames.file_white};
+  for (std::size_t i = 0; i < 4; ++i) levels.black[i] = static_cast<double>(frames.file_black[i / 2][i % 2]);
+  const bool has_dark = frames.of({}) != nullptr;
+  levels.dark_rgb.fill(frames.mean_black());
+  if (has_dark) levels.dark_rgb = frames.dark_rgb;
+  if (frames.full_rgb != std::array<float, 3>{})
+    levels.full_rgb.assign(frames.full_rgb.begin(), frames.full_rgb.end());
+  return levels;
+}
+
 std::string percent(double share, int digits = 2) {
   return fmt::format("{:.{}f} %", 100 * share, digits);
 }
@@ -118,6 +129,12 @@ report::Section summary_section(const ResponseFrames& frames, const ResponseMeas
                         fmt::format("{:.4f}", t.sigma_read_noise_counts)});
   table.rows.push_back({fmt::format("black level, counts, from {}", name_of(m.black_from)),
                         fmt::format("{:.3f}", m.black_counts), fmt::format("{:.3f}", m.sigma_black_counts)});
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (frames.full_rgb[c] == 0) continue;
+    table.rows.push_back(
+        {fmt::format("full, {}, counts, where the files say {:.0f}", kChannels[c], frames.file_white),
+         fmt::format("{:.0f}", frames.full_rgb[c]), ""});
+  }
   table.rows.push_back({"dark signal, counts a second", fmt::format("{:.3f}", m.dark_counts_per_s), ""});
   for (std::size_t c = 0; c < 3 && m.superposition; ++c) {
     table.rows.push_back({fmt::format("non-linearity, {}, of full scale", kChannels[c]),
@@ -253,6 +270,8 @@ Json numbers_of(const ResponseFrames& frames, const ResponseMeasurement& m,
                   {"black_counts", m.black_counts},
                   {"sigma_black_counts", m.sigma_black_counts},
                   {"black_from", name_of(m.black_from)},
+                  {"full_rgb", frames.full_rgb},
+                  {"file_white", frames.file_white},
                   {"dark_counts_per_s", m.dark_counts_per_s},
                   {"clipped_share", m.clipped_share},
                   {"drift", m.drift},
@@ -432,6 +451,7 @@ Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& opti
   change.subject.measured.clear();
   change.response = measured->response;
   if (frames->camera.iso > 0) change.response->iso = frames->camera.iso;
+  change.response->levels = levels_of(*frames);
   if (*trap) {
     change.response->veil = (*trap)->veil;
   } else if (from && from->response) {

@@ -11,8 +11,9 @@
 #include "capture/raw/decode_raw.h"
 #include "capture/raw/raw_info.h"
 #include "core/image_io/linear_image.h"
+#include "core/rig/dark_counts.h"
 #include "core/rig/photosites.h"
-#include "core/rig/radiometry.h"
+#include "core/rig/reading_stop.h"
 #include "core/rig/suits.h"
 
 namespace weft::calibration {
@@ -118,44 +119,34 @@ std::ptrdiff_t marked(View<const std::uint8_t> bad) {
   return count;
 }
 
-// Counts at which a frame ends though its file says that more is possible: many photosites alike at its
-// highest value are a converter's or a well's end, as no light makes them equal.
-std::optional<int> pile_up(const RawFrame& frame) {
-  constexpr double kAlike = 1e-3;  // share of the frame
-  int highest = 0;
-  std::ptrdiff_t alike = 0;
-  for (int y = 0; y < frame.counts.height(); ++y) {
-    for (int x = 0; x < frame.counts.width(); ++x) {
-      const int counts = frame.counts(x, y);
-      if (counts > highest) alike = 0;
-      highest = std::max(highest, counts);
-      alike += counts == highest ? 1 : 0;
-    }
-  }
-  const float black = frame.black[0][0];
-  const bool is_full =
-      static_cast<float>(highest) >= black + static_cast<float>(kSaturatedFrom) * (frame.white - black);
-  const bool is_dark = static_cast<float>(highest) < black + 0.1F * (frame.white - black);
-  const bool ends = static_cast<double>(alike) > kAlike * static_cast<double>(frame.counts.size().pixels());
-  return ends && !is_full && !is_dark ? std::optional(highest) : std::nullopt;
-}
-
-Error ends_below_full(const fs::path& file, int counts, float white) {
-  return {ErrorKind::kBadData, "the camera ends below what its files call full", file.string(),
-          fmt::format("photosites pile up at {} counts, and full is said to be {:.0f}", counts, white),
-          fmt::format("leave out the exposures that reach {} counts, and expose scans so that nothing does",
-                      counts)};
-}
-
 class Reader {
  public:
   Reader(ResponseFrames& out, const JobContext& context) : out_(out), context_(context) {
     for (const auto& [leds, exposures] : out_.by_leds) {
       for (const ExposureFrames& e : exposures) total_ += static_cast<double>(e.files.size());
+      if (!leds.empty()) total_ += static_cast<double>(exposures.back().files.size());
     }
   }
 
+  // The longest exposures show it.
+  Result<void> find_full() {
+    std::vector<std::array<TopTally, 3>> tallies;
+    std::optional<RawFrame> like;
+    for (const auto& [leds, exposures] : out_.by_leds) {
+      if (leds.empty()) continue;
+      for (const fs::path& file : exposures.back().files) {
+        Result<RawFrame> frame = read(file);
+        if (!frame) return std::move(frame).error();
+        tallies.push_back(top_tallies(*frame));
+        like = std::move(*frame);
+      }
+    }
+    if (like) out_.full_rgb = find_count_stops(tallies, *like);
+    return {};
+  }
+
   Result<void> read_dark(std::vector<ExposureFrames>& exposures) {
+    double frames = 0;
     out_.bad = Image<std::uint8_t>(out_.size);
     for (ExposureFrames& exposure : exposures) {
       std::optional<RawFrame> before;
@@ -163,6 +154,10 @@ class Reader {
       for (const fs::path& file : exposure.files) {
         Result<RawFrame> frame = read(file);
         if (!frame) return std::move(frame).error();
+        const DarkCounts dark = dark_counts(*frame);
+        for (std::size_t c = 0; c < 3; ++c)
+          out_.dark_rgb[c] = (out_.dark_rgb[c] * frames + dark.median[c]) / (frames + 1);
+        ++frames;
         std::vector<Photosite> found = hot_photosites(*frame, 1, context_.threads);
         Image<std::uint8_t> bad(out_.size);
         mark(bad.plane(), found);
@@ -184,7 +179,6 @@ class Reader {
       for (const fs::path& file : exposure.files) {
         Result<RawFrame> frame = read(file);
         if (!frame) return std::move(frame).error();
-        if (const auto ends_at = pile_up(*frame)) return ends_below_full(file, *ends_at, frame->white);
         const BlockLight light = block_light(*frame, out_.bad.plane());
         const auto [least_full, most_full] =
             std::minmax_element(light.full_share.begin(), light.full_share.end());
@@ -215,8 +209,12 @@ class Reader {
 
  private:
   static RawFrame copy_of(const RawFrame& frame) {
-    RawFrame copy = {Image<std::uint16_t>(frame.counts.size()), frame.cfa, frame.black, frame.white,
-                     frame.shot};
+    RawFrame copy = {Image<std::uint16_t>(frame.counts.size()),
+                     frame.cfa,
+                     frame.black,
+                     frame.white,
+                     frame.shot,
+                     frame.full};
     for (int y = 0; y < frame.counts.height(); ++y) {
       std::copy_n(frame.counts.plane().row(y), frame.counts.width(), copy.counts.plane().row(y));
     }
@@ -245,6 +243,7 @@ class Reader {
     } else if (out_.file_white != static_cast<double>(frame->white) || out_.file_black != frame->black) {
       return of_another(file, "its black and white levels differ from those of the first frame");
     }
+    frame->full = out_.full_rgb;
     context_.progress("read", ++done_ / total_);
     return frame;
   }
@@ -335,6 +334,7 @@ Result<ResponseFrames> read_response_frames(const fs::path& folder, const fs::pa
   out.cfa = body.first()->cfa;
 
   Reader reader(out, context);
+  if (Result<void> ok = reader.find_full(); !ok) return std::move(ok).error();
   for (auto& [leds, exposures] : out.by_leds) {  // the dark ones come first: {} is least
     Result<void> ok = leds.empty() ? reader.read_dark(exposures) : reader.read_lit(exposures);
     if (!ok) return std::move(ok).error();

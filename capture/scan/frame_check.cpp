@@ -5,6 +5,9 @@
 
 #include <utility>
 
+#include "capture/raw/decode_raw.h"
+#include "core/rig/radiometry.h"
+
 namespace weft::capture {
 namespace {
 
@@ -48,6 +51,14 @@ Result<void> check_alike(const RawFrame& frame, const RawFrame& first, Size firs
                               frame.shot.serial, first.shot.model, first.shot.serial));
   }
   return {};
+}
+
+Result<RawFrame> decode_as_calibrated(const std::filesystem::path& file,
+                                      const std::optional<Calibration>& calibration) {
+  Result<RawFrame> frame = decode_raw(file);
+  if (frame && calibration && calibration->response)
+    frame->full = measured_full(*frame, *calibration->response);
+  return frame;
 }
 
 }  // namespace weft::capture

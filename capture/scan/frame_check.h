@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "capture/devices.h"
 #include "core/base/result.h"
 #include "core/image/raw_frame.h"
+#include "core/rig/calibration.h"
 
 namespace weft::capture {
 
@@ -34,5 +36,9 @@ class ImageCount {
 /// Whether frames are of one camera with one setting: size, filters, levels, model, serial number.
 Result<void> check_alike(const RawFrame& frame, const RawFrame& first_without_counts, Size first_size,
                          const std::string& where);
+
+/// A frame that knows where the camera stops, as far as a calibration measured it. Errors as decode_raw().
+Result<RawFrame> decode_as_calibrated(const std::filesystem::path& file,
+                                      const std::optional<Calibration>& calibration);
 
 }  // namespace weft::capture

@@ -19,7 +19,7 @@ double light_on(const RawFrame& frame, Rect patch, const GlanceScale& scale) {
       const double black =
           static_cast<double>(frame.black[static_cast<std::size_t>(y & 1)][static_cast<std::size_t>(x & 1)]);
       const double v = (frame.counts(x, y) - black) / (static_cast<double>(frame.white) - black);
-      if (v >= kSaturatedFrom) return std::numeric_limits<double>::quiet_NaN();
+      if (frame.counts(x, y) >= saturated_from(frame, x, y)) return std::numeric_limits<double>::quiet_NaN();
       const auto c = static_cast<std::size_t>(frame.cfa.channel_at(x, y));
       const auto& [a, b] = scale.linearity[c];
       sum[c] += v * (1 + v * (a + b * v));

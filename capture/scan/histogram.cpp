@@ -22,7 +22,7 @@ std::size_t channel_of(const RawFrame& frame, int x, int y) {
 double share_of(const RawFrame& frame, int x, int y, double count) {
   const double black =
       static_cast<double>(frame.black[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)]);
-  return (count - black) / (static_cast<double>(frame.white) - black);
+  return (count - black) / (static_cast<double>(frame.full_at(x, y)) - black);
 }
 
 std::uint16_t believed(const View<const std::uint16_t>& counts, int x, int y) {

@@ -11,7 +11,8 @@ namespace weft::capture {
 /// Histograms of red, green and blue.
 std::array<RawHistogram, 3> histogram_rgb(const RawFrame& frame);
 
-/// How bright a frame is for the meter: shares of the way from black to white, the largest of the three
+/// How bright a frame is for the meter: shares of the way from black to where the camera
+/// stops, the largest of the three
 /// channels. A photosite counts for no more than the brightest of its four neighbours of the same filter
 /// says, so that hot ones do not count.
 struct Brightness {

@@ -14,7 +14,6 @@
 #include <new>
 #include <utility>
 
-#include "capture/raw/decode_raw.h"
 #include "capture/scan/frame_check.h"
 #include "capture/scan/histogram.h"
 #include "capture/scan/journal.h"
@@ -271,7 +270,7 @@ class Scan {
     const ExposureSettings exposure = {exposure_us, exposure_.iso, exposure_.f_number};
     Result<Photograph> photograph = shoot(light, exposure, "test");
     if (!photograph) return photograph.error();
-    Result<RawFrame> frame = decode_raw(photograph->file);
+    Result<RawFrame> frame = decode_as_calibrated(photograph->file, calibration_);
     if (!frame) return frame.error();
     if (Result<void> cleared = journal_->clear_incoming(); !cleared) return cleared.error();
     return brightness_of(*frame);
@@ -297,7 +296,7 @@ class Scan {
       if (shot.document.contains("image_number") && shot.document["image_number"].is_number_unsigned()) {
         last = std::max(last.value_or(0), shot.document["image_number"].get<std::uint32_t>());
       }
-      Result<RawFrame> frame = decode_raw(journal_->session().path_of(shot));
+      Result<RawFrame> frame = decode_as_calibrated(journal_->session().path_of(shot), calibration_);
       if (!frame) return frame.error();
       const auto& first = so_far_.first;
       if (Result<void> ok = first ? check_alike(*frame, *first, so_far_.first_size, shot.file)
@@ -433,7 +432,7 @@ class Scan {
 
   Kept checked_and_kept(const DueShot& shot, const Photograph& photograph, FramesSoFar& so_far) try {
     const std::string where = fmt::format("{} ({})", name_of(shot), file_stem(shot));
-    Result<RawFrame> frame = decode_raw(photograph.file);
+    Result<RawFrame> frame = decode_as_calibrated(photograph.file, calibration_);
     if (!frame) return unusable(shot, "damaged", frame.error(), {shot.index});
     if (!so_far.first) {
       if (Result<void> suits = accept_first(*frame, where, so_far); !suits)

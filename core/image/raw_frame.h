@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -43,6 +44,14 @@ struct RawFrame {
   std::array<std::array<float, 2>, 2> black = {};  ///< counts of no light, [y & 1][x & 1]
   float white = 0;                                 ///< counts at which the sensor or converter is full
   ShotMetadata shot;
+  /// Counts at which red, green and blue stop, where that was found out; 0: at white.
+  std::array<float, 3> full = {};
+
+  /// Counts at which a photosite of this column and row stops.
+  float full_at(int x, int y) const {
+    const float found = full[static_cast<std::size_t>(cfa.channel_at(x, y))];
+    return found > 0 ? found : white;
+  }
 };
 
 }  // namespace weft

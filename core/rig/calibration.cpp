@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 
 #include "core/base/files.h"
@@ -147,6 +148,14 @@ Error there_is_one(const fs::path& folder) {
 }
 
 }  // namespace
+
+bool CountLevels::are_of(const RawFrame& frame) const {
+  constexpr double kSame = 0.5;  // counts
+  bool same = std::abs(white - static_cast<double>(frame.white)) < kSame;
+  for (std::size_t i = 0; i < 4; ++i)
+    same = same && std::abs(black[i] - static_cast<double>(frame.black[i / 2][i % 2])) < kSame;
+  return same;
+}
 
 void describe(Fields& fields, CalibrationSubject& s) {
   fields.value({"rig", "Its name", {}, kMustSay}, s.rig);

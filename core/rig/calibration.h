@@ -10,6 +10,7 @@
 
 #include "core/base/result.h"
 #include "core/describe/fields.h"
+#include "core/image/raw_frame.h"
 #include "core/rig/albedo_scale.h"
 #include "core/rig/camera.h"
 #include "core/rig/fixed_point.h"
@@ -40,6 +41,20 @@ struct Veil {
   friend bool operator==(const Veil&, const Veil&) = default;
 };
 
+/// What counts mean in the files that a response was measured on, and where the sensor itself begins and
+/// ends.
+struct CountLevels {
+  std::array<double, 4> black = {};     ///< as those files say, of the filter cell by rows
+  double white = 0;                     ///< as those files say
+  std::array<double, 3> dark_rgb = {};  ///< without light: medians of dark shots, else black
+  std::vector<double> full_rgb =
+      {};  ///< where each channel stops, 0 of one that was not seen to; empty: none was
+
+  /// Whether a frame's file says the same levels.
+  bool are_of(const RawFrame& frame) const;
+  friend bool operator==(const CountLevels&, const CountLevels&) = default;
+};
+
 /// How counts follow light: variance of one reading and departure from a straight line.
 struct Response {
   double electrons_per_count = 1;  ///< photon noise: variance of s counts of light is s / electrons_per_count
@@ -49,6 +64,7 @@ struct Response {
   std::vector<ExposureRatio> exposure_ratios = {};  ///< at one ISO and aperture
   std::optional<double> black_counts = {};  ///< measured, where the file's own level is not to be trusted
   std::optional<double> iso = {};           ///< of the frames it was measured on
+  std::optional<CountLevels> levels = {};   ///< of the files it was measured on
   std::optional<Veil> veil = {};            ///< of the lens, taken from readings (core/rig/veil.h)
 
   /// The measured ratio between two exposure times (by same_setting()), whichever way it was measured.

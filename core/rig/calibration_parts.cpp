@@ -140,6 +140,16 @@ void describe(Fields& fields, Veil& v) {
   fields.value({"spread", "Of its Gaussian, frame diagonals", {0.05, 10}, kMustSay}, v.spread);
 }
 
+void describe(Fields& fields, CountLevels& l) {
+  fields.value({"black", "Counts, of the filter cell by rows, as the files say", {}, kMustSay}, l.black);
+  fields.value({"white", "Counts, as the files say", kAboveZero, kMustSay}, l.white);
+  fields.value({"dark_rgb", "Counts without light: medians of dark shots, else black", {}, kMustSay},
+               l.dark_rgb);
+  fields.value({"full_rgb", "Counts at which each stops, 0 of one that was not seen to", {}, kUnlessEmpty},
+               l.full_rgb);
+  fields.require(l.full_rgb.empty() || l.full_rgb.size() == 3, "full_rgb", "must be three numbers");
+}
+
 void describe(Fields& fields, Response& r) {
   fields.value(
       {"electrons_per_count", "Photon noise of s counts has a variance of s over it", kAboveZero, kMustSay},
@@ -152,10 +162,12 @@ void describe(Fields& fields, Response& r) {
   fields.value({"black_counts", "Measured, where a session has no dark shot; since 1.2"}, r.black_counts);
   fields.value({"iso", "Of the frames it was measured on, which sessions must share; since 1.3", kAboveZero},
                r.iso);
+  fields.object({"levels", "Of the counts it was measured on; since 1.5", {}, kUnlessEmpty}, r.levels);
   fields.object({"veil", "Glare of the lens; since 1.4", {}, kUnlessEmpty}, r.veil);
 }
 
 const char* schema_name(const Response& r) {
+  if (r.levels) return "weft.response/1.5";
   if (r.veil) return "weft.response/1.4";
   if (r.iso) return "weft.response/1.3";
   if (r.black_counts) return "weft.response/1.2";

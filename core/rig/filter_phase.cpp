@@ -13,7 +13,7 @@ namespace {
 constexpr double kDark = 0.02, kFull = 0.95;  // of the way from black to white
 constexpr double kDiffers = 0.1;              // log of light
 constexpr double kFitsBetter = 4;             // times
-constexpr std::size_t kFewestCells = 1000, kMostCells = 40000;
+constexpr std::size_t kFewestCells = 1000, kMostCellsSeen = 40000;
 constexpr std::size_t kFewestOthers = 3;
 
 double distance(const SiteLight& a, const SiteLight& b, std::size_t row, std::size_t column) {
@@ -56,7 +56,7 @@ bool greens_are_red_and_blue(const SiteLight& light, const CfaPattern& cfa) {
 std::optional<SiteLight> site_light(const RawFrame& frame) {
   const Size size = frame.counts.size();
   const auto cells = static_cast<std::size_t>(size.pixels()) / 4;
-  const int step = 2 * static_cast<int>(1 + std::sqrt(static_cast<double>(cells / kMostCells)));
+  const int step = 2 * static_cast<int>(1 + std::sqrt(static_cast<double>(cells / kMostCellsSeen)));
   std::array<std::array<std::vector<double>, 2>, 2> logs;
   for (int y = 0; y + 1 < size.height; y += step)
     for (int x = 0; x + 1 < size.width; x += step) {

@@ -20,7 +20,7 @@ std::optional<SiteLight> site_light(const RawFrame& frame);
 /// How the filters of a mosaic lie against the pattern that its file names.
 enum class FilterShift { kNone, kRow, kColumn, kRowOrColumn };
 
-/// Of each mosaic of one body, told by its picture. One that lies a row or a column off against the others
+/// Tells it of each mosaic of one body by its picture. One that lies a row or a column off against the others
 /// has their four sites in other places. All of them lie so (kRowOrColumn) where the two greens differ by
 /// over a tenth, and red and blue by less than a quarter of that: those are the greens. Where all four sites
 /// are alike nothing is told, and a lamp of another colour moves red and blue, but never one green alone.

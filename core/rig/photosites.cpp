@@ -135,8 +135,7 @@ struct Replacement {
 
   void apply(Photosite of, RawFrame& frame) const {
     if (count == 0) return;
-    const float black = frame.black[static_cast<std::size_t>(of.y & 1)][static_cast<std::size_t>(of.x & 1)];
-    const double full_from = black + kSaturatedFrom * (static_cast<double>(frame.white) - black);
+    const double full_from = saturated_from(frame, of.x, of.y);
     double mean = 0;
     bool is_full = false;
     for (int i = 0; i < count; ++i) {
@@ -145,7 +144,7 @@ struct Replacement {
       mean += share * there;
       is_full = is_full || there >= full_from;
     }
-    const double value = is_full ? std::ceil(static_cast<double>(frame.white)) : mean + 0.5;
+    const double value = is_full ? std::ceil(static_cast<double>(frame.full_at(of.x, of.y))) : mean + 0.5;
     frame.counts(of.x, of.y) = static_cast<std::uint16_t>(std::clamp(value, 0.0, 65535.0));
   }
 };

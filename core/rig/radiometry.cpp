@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "core/rig/same_camera.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/rig/radiometry.cpp"
 #include <hwy/foreach_target.h>
@@ -77,12 +79,22 @@ float black_offset(const RawFrame& like, const Response& response) {
 
 }  // namespace
 
+std::array<float, 3> measured_full(const RawFrame& frame, const Response& response) {
+  if (!response.levels || response.levels->full_rgb.empty()) return {};
+  if (response.iso && frame.shot.iso > 0 && !same_setting(*response.iso, frame.shot.iso)) return {};
+  if (!response.levels->are_of(frame)) return {};
+  std::array<float, 3> full;
+  for (std::size_t c = 0; c < 3; ++c) full[c] = static_cast<float>(response.levels->full_rgb[c]);
+  return full;
+}
+
 Radiometry::Radiometry(const RawFrame& like, const RawFrame* dark, const Response& response,
                        Exposure exposure)
     : dark_(dark != nullptr ? dark->counts.plane() : View<const std::uint16_t>()),
       cfa_(like.cfa),
       per_second_(static_cast<float>(1.0 / (exposure.exposure_us * 1e-6 * exposure.iso / 100))) {
   const float measured = dark == nullptr ? black_offset(like, response) : 0;
+  const std::array<float, 3> by_calibration = measured_full(like, response);
   double mean_range = 0;
   for (std::size_t y = 0; y < 2; ++y) {
     for (std::size_t x = 0; x < 2; ++x) {
@@ -90,7 +102,11 @@ Radiometry::Radiometry(const RawFrame& like, const RawFrame* dark, const Respons
       const int site = like.cfa.site[y][x];
       const auto channel = static_cast<std::size_t>(site == 3 ? 1 : site);
       black_[y][x] = like.black[y][x] + measured;
-      saturated_from_[y][x] = like.black[y][x] + static_cast<float>(kSaturatedFrom) * range;
+      const float full = like.full[channel] > 0        ? like.full[channel]
+                         : by_calibration[channel] > 0 ? by_calibration[channel]
+                                                       : like.white;
+      saturated_from_[y][x] =
+          like.black[y][x] + static_cast<float>(kSaturatedFrom) * (full - like.black[y][x]);
       per_count_[y][x] = 1 / range;
       linearity_a_[y][x] = static_cast<float>(response.linearity[channel][0]);
       linearity_b_[y][x] = static_cast<float>(response.linearity[channel][1]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -19,6 +20,17 @@ namespace weft {
 
 /// A sensor is taken to be full from this share of the way from black to white.
 inline constexpr double kSaturatedFrom = 0.98;
+
+/// Counts from which a photosite of this column and row is taken to be full.
+inline double saturated_from(const RawFrame& frame, int x, int y) {
+  const auto black =
+      static_cast<double>(frame.black[static_cast<std::size_t>(y & 1)][static_cast<std::size_t>(x & 1)]);
+  return black + kSaturatedFrom * (static_cast<double>(frame.full_at(x, y)) - black);
+}
+
+/// Where a calibration measured that a camera stops, as of RawFrame::full; 0 of frames of another ISO or with
+/// other levels in their files.
+std::array<float, 3> measured_full(const RawFrame& frame, const Response& response);
 
 /// Variance of one reading: photon noise grows with the reading, the rest does not.
 struct NoiseModel {
@@ -43,7 +55,8 @@ class Radiometry {
     double exposure_us = 0;
     double iso = 100;
   };
-  /// `like` is any frame of the session: its levels and filter pattern hold for all. `dark` (may be null)
+  /// `like` is any frame of the session: its levels and filter pattern hold for all. Where it does not say
+  /// where it stops the response may. `dark` (may be null)
   /// must outlive this object and match `like` in size. Without it, response.black_counts stands in the place
   /// of the file's mean black level.
   Radiometry(const RawFrame& like, const RawFrame* dark, const Response& response, Exposure exposure);

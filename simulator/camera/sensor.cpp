@@ -42,6 +42,8 @@ Response response_of(const Sensor& sensor) {
   response.electrons_per_count = sensor.electrons_per_count();
   response.read_noise_counts =
       std::hypot(sensor.read_noise_electrons / sensor.electrons_per_count(), std::sqrt(1.0 / 12));
+  const double black = sensor.black;
+  response.levels = {{black, black, black, black}, sensor.white, {black, black, black}};
   return response;
 }
 

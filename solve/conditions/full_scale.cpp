@@ -12,16 +12,14 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/rig/reading_stop.h"
 
 namespace weft::solve {
 namespace {
 
-constexpr std::int64_t kFewestFull = 100;  // samples of all photographs
-constexpr std::int64_t kFewestInOne = 20;  // of a photograph, for it to count
-constexpr double kMostOfOne = 0.5;         // of a photograph's samples: more is a surface of one value
-constexpr double kBelow = 0.8;             // of the largest value
-constexpr int kPile = 3;                   // times as many as any value below has
-constexpr std::size_t kBins = 4096;        // from kBelow to the largest value
+constexpr StopRules kStop = {0, 0.5};     // more than half of a photograph at one value is a surface
+constexpr double kBelow = 0.8;            // of the largest value
+constexpr std::uint32_t kLevels = 20480;  // from 0 to the largest value, which alone has the last
 
 float largest_in(View<const float> plane) {
   float largest = 0;
@@ -34,42 +32,21 @@ float largest_in(View<const float> plane) {
   return largest;
 }
 
-// How often a plane has the largest value, and those below.
-struct Top {
-  std::int64_t full = 0;
-  std::vector<std::int64_t> below = std::vector<std::int64_t>(kBins);
-};
-
-Top top_of(View<const float> plane, float largest) {
-  Top top;
-  const double scale = kBins / ((1 - kBelow) * static_cast<double>(largest));
-  const double from = kBelow * static_cast<double>(largest);
+TopTally tally_of(View<const float> plane, float largest) {
+  const double scale = kLevels / static_cast<double>(largest), from = kBelow * static_cast<double>(largest);
+  TopTally tally = {static_cast<std::uint32_t>(kBelow * kLevels), {}, plane.size().pixels()};
+  tally.counts.resize(kLevels - tally.first + 1);
   for (int y = 0; y < plane.height(); ++y) {
     const float* row = plane.row(y);
     for (int x = 0; x < plane.width(); ++x) {
       const double value = static_cast<double>(row[x]);
       if (!(value >= from) || !std::isfinite(value)) continue;
-      if (row[x] == largest) {
-        ++top.full;
-        continue;
-      }
-      ++top.below[std::min(kBins - 1, static_cast<std::size_t>((value - from) * scale))];
+      const std::uint32_t level =
+          row[x] == largest ? kLevels : std::min(kLevels - 1, static_cast<std::uint32_t>(value * scale));
+      ++tally.counts[std::max(level, tally.first) - tally.first];
     }
   }
-  return top;
-}
-
-bool is_a_pile(const std::vector<Top>& tops, std::int64_t pixels) {
-  std::int64_t full = 0;
-  int photographs = 0;
-  std::vector<std::int64_t> below(kBins);
-  for (const Top& top : tops) {
-    if (static_cast<double>(top.full) > kMostOfOne * static_cast<double>(pixels)) return false;
-    full += top.full;
-    photographs += top.full >= kFewestInOne;
-    std::ranges::transform(top.below, below, below.begin(), std::plus());
-  }
-  return full >= kFewestFull && photographs > 1 && full > kPile * std::ranges::max(below);
+  return tally;
 }
 
 void mark(View<float> plane, float largest) {
@@ -94,12 +71,13 @@ Result<void> find_full_scale(const Exposures& exposures) {
     });
     const float largest = std::ranges::max(each);
     if (!(largest > 0)) continue;
-    std::vector<Top> tops(photographs.size());
+    std::vector<TopTally> tops(photographs.size());
     parallel_for(tops.size(), exposures.context.threads, [&](std::size_t k, int) {
-      if (each[k] >= static_cast<float>(kBelow) * largest) tops[k] = top_of(photographs[k].plane(c), largest);
+      if (each[k] >= static_cast<float>(kBelow) * largest)
+        tops[k] = tally_of(photographs[k].plane(c), largest);
       developed->page_out(k);
     });
-    if (!is_a_pile(tops, exposures.photographs.size.pixels())) continue;
+    if (find_stop(tops, kStop) != double{kLevels}) continue;
     found[static_cast<std::size_t>(c)] = largest;
     parallel_for(photographs.size(), exposures.context.threads, [&](std::size_t k, int) {
       mark(photographs[k].plane(c), largest);

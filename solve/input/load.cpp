@@ -24,6 +24,7 @@
 #include "solve/gloss/sample_gloss.h"
 #include "solve/input/photo_mask.h"
 #include "solve/levels/reference.h"
+#include "solve/photographs/count_levels.h"
 #include "solve/photographs/plane_weights.h"
 
 namespace weft::solve {
@@ -145,6 +146,14 @@ Result<void> read_mosaics(const SolvePlan& plan, const JobContext& context, Phot
     if (Result<void> ok = check_levels((*frames)[i], frames->front(), plan.session.path_of(shots[i])); !ok)
       return ok;
   }
+  Result<std::vector<std::string>> settled = settle_levels(*frames, plan.lit.size(), plan.dark.has_value(),
+                                                           plan.calibration.response, context.threads);
+  if (!settled) {
+    Error error = std::move(settled).error();
+    error.where = plan.session.path_of(plan.lit.front()).string();
+    return error;
+  }
+  photographs.conditions.assumed = *std::move(settled);
   std::vector<RawFrame> lit = take(*frames, plan.lit.size());
   if (Result<void> ok = check_filters(lit, plan, context.threads); !ok) return ok;
   std::optional<RawFrame> dark;

@@ -22,7 +22,7 @@ Image<T> cut_image(const Image<T>& image, Rect area) {
 }
 
 RawFrame cut_frame(const RawFrame& frame, Rect area) {
-  return {cut_image(frame.counts, area), frame.cfa, frame.black, frame.white, frame.shot};
+  return {cut_image(frame.counts, area), frame.cfa, frame.black, frame.white, frame.shot, frame.full};
 }
 
 FrameMend cut_mend(const FrameMend& mend, Rect area) {

@@ -208,6 +208,16 @@ TEST(Schemas, Calibration1WithDistantLights) {
   EXPECT_EQ(lights[1].irradiance_rgb, (std::array<double, 3>{1, 1.5, 2}));
 }
 
+TEST(Schemas, Response1_5) {
+  const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1.2-levels");
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  const CountLevels& levels = calibration->response.value().levels.value();
+  EXPECT_EQ(levels.black, (std::array<double, 4>{600, 600, 600, 600}));
+  EXPECT_EQ(levels.white, 16383);
+  EXPECT_EQ(levels.dark_rgb, (std::array<double, 3>{600, 601, 600}));
+  EXPECT_EQ(levels.full_rgb, (std::vector<double>{0, 15520, 15840}));
+}
+
 TEST(Schemas, Solve1) {
   const Result<Json> document = read_json(kSchemas / "weft.solve-1/solve.json", "weft.solve", 1);
   ASSERT_TRUE(document) << document.error().message();

@@ -397,7 +397,7 @@ TEST(CalibrateResponse, MeasuresTheVeilOfALensInABlackTrap) {
   EXPECT_EQ(kept->calibration.response->veil, veil) << "what was not photographed again stays";
 }
 
-TEST(CalibrateResponse, RefusesACameraThatEndsBelowWhatItsFilesCallFull) {
+TEST(CalibrateResponse, MeasuresWhereACameraStopsBelowWhatItsFilesCallFullAndWhatDarkIs) {
   const Workspace work;
   Frames frames;
   frames.change = [](RawFrame& frame) {
@@ -407,7 +407,22 @@ TEST(CalibrateResponse, RefusesACameraThatEndsBelowWhatItsFilesCallFull) {
     }
   };
   frames.add_all(work / "response");
-  EXPECT_THAT(refusal(work), HasSubstr("photosites pile up at 12000 counts"));
+  const auto measured = calibration::calibrate_response({work / "response", {}, work / "new", {}}, {});
+  ASSERT_TRUE(measured) << measured.error().message();
+  const CountLevels& levels = measured->calibration.response->levels.value();
+  EXPECT_EQ(levels.full_rgb, (std::vector<double>{12'000, 12'000, 12'000}));
+  for (const double dark : levels.dark_rgb) EXPECT_NEAR(dark, 600, 1);
+  EXPECT_EQ(levels.white, 15520);
+}
+
+TEST(CalibrateResponse, SaysNothingOfFullWhereNothingStops) {
+  const Workspace work;
+  Frames frames;
+  frames.add(work / "response", "dark", 0, 0, kExposures_us[3], 3);
+  for (const int exposure_us : kExposures_us) frames.add(work / "response", "led01", 0.5, 0, exposure_us);
+  const auto measured = calibration::calibrate_response({work / "response", {}, work / "new", {}}, {});
+  ASSERT_TRUE(measured) << measured.error().message();
+  EXPECT_TRUE(measured->calibration.response->levels.value().full_rgb.empty());
 }
 
 TEST(CalibrateResponse, RefusesATrapThatIsNotThere) {

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "core/image/raw_frame.h"
+
+namespace weft {
+
+/// Where the counts of a dark shot lie.
+struct DarkCounts {
+  std::array<double, 3> median = {};  ///< red, green, blue
+  double spread = 0;                  ///< of the widest channel: nine tenths of its counts lie so far apart
+};
+
+DarkCounts dark_counts(const RawFrame& dark);
+
+}  // namespace weft
