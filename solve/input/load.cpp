@@ -146,20 +146,20 @@ Result<void> read_mosaics(const SolvePlan& plan, const JobContext& context, Phot
     if (Result<void> ok = check_levels((*frames)[i], frames->front(), plan.session.path_of(shots[i])); !ok)
       return ok;
   }
-  Result<std::vector<std::string>> settled = settle_levels(*frames, plan.lit.size(), plan.dark.has_value(),
-                                                           plan.calibration.response, context.threads);
+  Result<SettledLevels> settled = settle_levels(*frames, plan.lit.size(), plan.dark.has_value(),
+                                                plan.calibration.response, context.threads);
   if (!settled) {
     Error error = std::move(settled).error();
     error.where = plan.session.path_of(plan.lit.front()).string();
     return error;
   }
-  photographs.conditions.assumed = *std::move(settled);
+  photographs.conditions.assumed = std::move(settled->said);
   std::vector<RawFrame> lit = take(*frames, plan.lit.size());
   if (Result<void> ok = check_filters(lit, plan, context.threads); !ok) return ok;
   std::optional<RawFrame> dark;
   if (plan.dark) dark = std::move(take(*frames, 1).front());
-  const Response response =
-      plan.calibration.response ? *plan.calibration.response : usual_response(lit.front());
+  const Response response = plan.calibration.response ? scaled(*plan.calibration.response, settled->scale)
+                                                      : usual_response(lit.front());
   Mosaics mosaics(std::move(lit), std::move(dark), response, exposure_of(plan.lit.front()));
   Result<std::optional<Image<std::uint8_t>>> mask = mask_of(plan);
   if (!mask) return std::move(mask).error();

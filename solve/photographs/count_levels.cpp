@@ -66,7 +66,7 @@ class Levels {
     far_above_ = share_above(tallies, black_of(like()) + kFarAbove * range_of(like()));
   }
 
-  Result<std::vector<std::string>> settle() {
+  Result<SettledLevels> settle() {
     const CountLevels* calibrated = response_ && response_->levels ? &*response_->levels : nullptr;
     if (calibrated != nullptr && !calibrated->are_of(like())) {
       if (Result<void> ok = settle_by(*calibrated); !ok) return std::move(ok).error();
@@ -83,7 +83,7 @@ class Levels {
           for (float& black : row) black += off;
     }
     settle_full();
-    return std::move(said_);
+    return SettledLevels{std::move(said_), scale_};
   }
 
  private:
@@ -129,7 +129,8 @@ class Levels {
   Result<void> settle_by(const CountLevels& calibrated) {
     const double black = mean_of(calibrated.black), range = calibrated.white - black;
     const std::optional<double> scale = scale_to(calibrated);
-    if (std::abs(range_of(like()) / (scale.value_or(1) * range) - 1) <= kSameRange) return {};
+    scale_ = scale.value_or(1);
+    if (std::abs(range_of(like()) / (scale_ * range) - 1) <= kSameRange) return {};
     if (!scale) {
       return refusal(
           fmt::format("they call {:.0f} black and {:.0f} white, those of the calibration {:.0f} and {:.0f}, "
@@ -177,15 +178,23 @@ class Levels {
   const std::optional<Response>& response_;
   std::optional<double> dark_;  // counts, where the dark shot is dark
   std::array<float, 3> stops_ = {}, full_ = {};
-  double far_above_ = 0;
+  double far_above_ = 0, scale_ = 1;
   std::vector<std::string> said_;
 };
 
 }  // namespace
 
-Result<std::vector<std::string>> settle_levels(std::span<RawFrame> frames, std::size_t lit, bool has_dark,
+Result<SettledLevels> settle_levels(std::span<RawFrame> frames, std::size_t lit, bool has_dark,
                                                const std::optional<Response>& response, int threads) {
   return Levels(frames, lit, has_dark, response, threads).settle();
+}
+
+Response scaled(Response response, double scale) {
+  if (scale == 1) return response;
+  response.electrons_per_count /= scale;
+  response.read_noise_counts *= scale;
+  if (response.black_counts) *response.black_counts *= scale;
+  return response;
 }
 
 }  // namespace weft::solve

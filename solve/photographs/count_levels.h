@@ -13,8 +13,13 @@
 
 namespace weft::solve {
 
-/// Makes the levels of a session's mosaics what their counts show them to be, where files say otherwise, and
-/// returns a sentence for each that was changed. `frames`: all of one body, exposure and set of levels, the
+struct SettledLevels {
+  std::vector<std::string> said;  ///< a sentence for each thing that was changed
+  double scale = 1;               ///< counts of the frames for one of the calibration's
+};
+
+/// Makes the levels of a session's mosaics what their counts show them to be, where files say otherwise.
+/// `frames`: all of one body, exposure and set of levels, the
 /// first `lit` of them lit, the next the dark shot where there is one.
 ///
 /// Black and white: albedo goes by counts over white - black, as it did when the calibration was made. Where
@@ -28,7 +33,10 @@ namespace weft::solve {
 ///
 /// Errors (kBadData, whose `where` the caller says): levels that are not the calibration's, and nothing that
 /// tells how their counts compare; counts far above white.
-Result<std::vector<std::string>> settle_levels(std::span<RawFrame> frames, std::size_t lit, bool has_dark,
+Result<SettledLevels> settle_levels(std::span<RawFrame> frames, std::size_t lit, bool has_dark,
                                                const std::optional<Response>& response, int threads);
+
+/// What a response says of counts that are so many times those it was measured on.
+Response scaled(Response response, double scale);
 
 }  // namespace weft::solve

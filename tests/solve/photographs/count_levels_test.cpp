@@ -50,15 +50,17 @@ struct Settled {
   double black = 0, white = 0;
   std::array<float, 3> full = {};
   std::vector<std::string> said;
+  double scale = 1;
 };
 
 Settled settle(std::vector<RawFrame> frames, const std::optional<Response>& response, bool has_dark = true) {
   if (!has_dark) frames.pop_back();
-  auto said = settle_levels(frames, 3, has_dark, response, 1);
-  EXPECT_TRUE(said.has_value()) << said.error().message();
+  auto settled = settle_levels(frames, 3, has_dark, response, 1);
+  EXPECT_TRUE(settled.has_value()) << settled.error().message();
+  if (!settled) return {};
   const RawFrame& frame = frames.front();
   return {static_cast<double>(frame.black[1][0]), static_cast<double>(frame.white), frame.full,
-          said ? *said : std::vector<std::string>{"refused"}};
+          settled->said, settled->scale};
 }
 
 constexpr std::array<float, 3> kAsSaid = {};
@@ -90,6 +92,9 @@ TEST(SettleLevels, TakesCountsThatWereShiftedByTwoBits) {
   const Settled settled = settle(session(2400, 65535, 4), calibrated());
   EXPECT_NEAR(settled.black, 2400, 3);
   EXPECT_NEAR(settled.white, 62080, 10) << "4 times 15520";
+  EXPECT_EQ(settled.scale, 4);
+  EXPECT_EQ(scaled({.electrons_per_count = 2.5, .read_noise_counts = 2}, 4).electrons_per_count, 0.625);
+  EXPECT_EQ(scaled({.electrons_per_count = 2.5, .read_noise_counts = 2}, 4).read_noise_counts, 8);
   EXPECT_THAT(settle(session(2400, 62080, 4), calibrated()).said, IsEmpty()) << "as the file says itself";
 }
 
