@@ -57,19 +57,24 @@ std::string read_amount(const Field& field, const std::string& text, double& amo
   const std::string spelled = is_of_a_second ? text + "s" : text;  // "1/60", as cameras have it
   std::string names;
   for (const NumberUnit& unit : field.units) {
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", *unit.name == '\0' ? "nothing" : unit.name);
+    names += fmt::format("{}{}",
+                         names.empty()                  ? ""
+                         : &unit == &field.units.back() ? " or "
+                                                        : ", ",
+                         *unit.name == '\0' ? "nothing" : unit.name);
     if (!spelled.ends_with(unit.name)) continue;
     std::string_view said =
         std::string_view(spelled).substr(0, spelled.size() - std::string_view(unit.name).size());
     said = said.substr(0, said.find_last_not_of(' ') + 1);
     const std::optional<double> number = read_share(said);
+    if (!number && said.find(',') != said.npos) return why_no_number(said);
     if (!number) continue;
     amount = *number * unit.size;
     if (field.range.holds(amount)) return "";
     return fmt::format("{} {}, and is {}", rule_of(field.range), field.units.front().name, text);
   }
-  return fmt::format("must be a number with {} behind it, such as 20{}, and is \"{}\"", names,
-                     field.units.front().name, text);
+  return fmt::format("\"{}\" is no number with {} behind it, such as 20{}", text, names,
+                     field.units.front().name);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <type_traits>
 
@@ -23,7 +24,11 @@ std::string why_no_real(const std::string& text) {
 }
 template <typename T>
 std::string why_not_whole(const std::string& text) {
-  return as_whole_number<T>(text) ? "" : "\"" + text + "\" is no whole number in its range";
+  if (as_whole_number<T>(text)) return "";
+  const std::optional<double> number = as_number(text);
+  if (!number) return why_no_number(text);
+  return "\"" + text +
+         (*number == std::floor(*number) ? "\" is beyond what it can be" : "\" is no whole number");
 }
 
 template <typename T>

@@ -17,6 +17,7 @@
 #include "app/cli/opened_devices.h"
 #include "app/cli/print_rig_plan.h"
 #include "app/cli/rig_check.h"
+#include "app/cli/rig_flash.h"
 #include "app/cli/rig_new.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/rig_owner.h"
@@ -304,6 +305,8 @@ Verb rig_verb() {
       .verbs = {
           {"new", "Write a rig file that names the board and the camera that are plugged in", add_rig_new},
           {"status", "What board and camera say of themselves", add_rig_status},
+          {"flash", "Put the light controller's firmware onto the Arduino at a port, by avrdude",
+           add_rig_flash},
           {"check", "Has the rig moved since it was calibrated, by what scans show of it?", add_rig_check},
           {"lights", "Light the LEDs one after another", add_rig_lights},
           {"shot", "Take one photograph that is not kept: what is clipped, and a picture", add_rig_shot},

@@ -27,7 +27,7 @@ Error unlike_protocol(const BoardReply& reply, const std::string& port) {
   return {ErrorKind::kProtocol, "the LED board answers against its protocol", port,
           refused ? fmt::format("it refused command {} with code {}", reply.payload[1], reply.payload[0])
                   : fmt::format("{} bytes in reply to command {}", reply.length, reply.command),
-          "flash its firmware: ./dev flash " + port};
+          "flash its firmware: weft rig flash " + port};
 }
 
 /// Nothing where this board can be used, and what to do where not.
@@ -35,7 +35,7 @@ Result<void> check_version(const BoardReply& hello, const std::string& port) {
   const int major = hello.payload[0], minor = hello.payload[1];
   if (major == kWeftProtocolMajor) return {};
   const bool newer = major > kWeftProtocolMajor;
-  const std::string flash = "./dev flash " + port;
+  const std::string flash = "weft rig flash " + port;
   return Error{
       ErrorKind::kBadData,
       newer ? "the LED board's firmware is newer than this weft" : "the LED board's firmware is too old",

@@ -139,7 +139,8 @@ class OpenLedBoard final : public LedBoard {
       return Error{
           ErrorKind::kUsage, "the LED board cannot turn the polariser", options_.port,
           has_more_outputs() ? "it is turned to parallel or crossed" : "its firmware is older than that",
-          has_more_outputs() ? "ask for one of these" : "flash its firmware: ./dev flash " + options_.port};
+          has_more_outputs() ? "ask for one of these"
+                             : "flash its firmware: weft rig flash " + options_.port};
     }
     const std::array<std::uint8_t, 1> payload = {state == Polariser::kCrossed ? std::uint8_t{kWeftCrossed}
                                                                               : std::uint8_t{kWeftParallel}};

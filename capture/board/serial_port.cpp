@@ -57,7 +57,7 @@ Error busy(const std::string& name, const std::string& holder) {
 Error cannot_open(const std::string& name, int error_number) {
   if (error_number == EACCES || error_number == EPERM) {
     return no_port(name, "the LED board's port may not be opened by this user", system_reason(error_number),
-                   "run `sudo usermod -aG dialout $USER` and log in again");
+                   remedy_of_access(name));
   }
   if (error_number == EBUSY) {
     struct stat facts {};
@@ -90,12 +90,20 @@ std::string kernel_name(const Descriptor& device, const std::string& name) {
   return failed ? name : "/dev/" + in_class.filename().string();
 }
 
-/// "2341:0043 5573"; empty where it is no USB device.
-std::string usb_identity_of(const sp_port* port) {
+UsbDevice usb_of(const sp_port* port) {
   int vendor = 0, product = 0;
   if (sp_get_port_usb_vid_pid(port, &vendor, &product) != SP_OK) return {};
-  const char* serial = sp_get_port_usb_serial(port);
-  return fmt::format("{:04x}:{:04x} {}", vendor, product, serial ? serial : "");
+  const auto text = [](const char* said) { return std::string(said ? said : ""); };
+  const std::string maker = text(sp_get_port_usb_manufacturer(port)),
+                    name = text(sp_get_port_usb_product(port));
+  return {fmt::format("{:04x}:{:04x}", vendor, product), text(sp_get_port_usb_serial(port)),
+          name.starts_with(maker) || name.empty() ? name : maker + " " + name};
+}
+
+/// "2341:0043 5573"; empty where it is no USB device.
+std::string usb_identity_of(const sp_port* port) {
+  const UsbDevice usb = usb_of(port);
+  return usb.numbers.empty() ? "" : usb.numbers + " " + usb.serial;
 }
 
 unsigned int count_ms(std::chrono::milliseconds time) {
@@ -172,6 +180,10 @@ bool SerialPort::is_there() const {
 
 std::string SerialPort::usb_identity() const {
   return usb_identity_of(port_.get());
+}
+
+UsbDevice SerialPort::usb() const {
+  return usb_of(port_.get());
 }
 
 std::vector<std::string> SerialPort::names_of_usb(const std::string& identity) {

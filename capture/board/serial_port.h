@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "capture/board/port_talk.h"
 #include "core/base/descriptor.h"
 #include "core/base/result.h"
 
@@ -39,6 +40,7 @@ class SerialPort {
   const std::string& name() const { return name_; }
   /// Which USB device it is, "2341:0043 5573"; empty where it is none.
   std::string usb_identity() const;
+  UsbDevice usb() const;
 
  private:
   struct FreePort {

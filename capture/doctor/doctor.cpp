@@ -119,8 +119,8 @@ void examine_board_port(const Rig& rig, const SystemPlaces& places, std::vector<
     return;
   }
   if (::faccessat(AT_FDCWD, port.c_str(), R_OK | W_OK, AT_EACCESS) != 0) {
-    found.push_back(fault("board", fmt::format("this user may not use {}", port.string()),
-                          "sudo usermod -aG dialout $USER, then log in again"));
+    found.push_back(
+        fault("board", fmt::format("this user may not use {}", port.string()), remedy_of_access(port)));
   }
   report_holders(holders_of(port, places), "board", port, found);
 }
@@ -167,7 +167,7 @@ void examine_usb(const SystemPlaces& places, std::vector<SetupFinding>& found) {
   for (const UsbCamera& camera : usb_cameras(places)) {
     if (::faccessat(AT_FDCWD, camera.node.c_str(), R_OK | W_OK, AT_EACCESS) != 0) {
       found.push_back(fault("camera", fmt::format("this user may not use {}", camera.node.string()),
-                            "sudo usermod -aG plugdev $USER, then log in again"));
+                            remedy_of_access(camera.node)));
     }
     report_holders(holders_of(camera.node, places), "camera", camera.node, found);
     if (camera.megabits > 0 && camera.megabits < 480) {

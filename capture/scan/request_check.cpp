@@ -52,7 +52,7 @@ Result<ShotList> checked_shots(const ScanRequest& request, int leds_of_board, bo
     return Error{ErrorKind::kBadData,
                  request.below ? "the LED board has no output for a light below"
                                : "the LED board cannot turn the polariser",
-                 "scan", "its firmware is older than that", "flash its firmware: ./dev flash PORT"};
+                 "scan", "its firmware is older than that", "flash its firmware: weft rig flash PORT"};
   }
   if (list.leds.empty()) {
     list.leds.resize(static_cast<std::size_t>(leds_of_board));

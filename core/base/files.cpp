@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <grp.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -66,6 +67,18 @@ Result<bool> look_for(const fs::path& path) {
 
 std::string system_reason(int error_number) {
   return std::strerror(error_number);
+}
+
+std::string remedy_of_access(const fs::path& device) {
+  struct stat facts {};
+  const bool known = ::stat(device.c_str(), &facts) == 0;
+  const struct group* owner = known && facts.st_gid != 0 ? ::getgrgid(facts.st_gid) : nullptr;
+  if (owner != nullptr && (facts.st_mode & S_IRGRP) != 0 && (facts.st_mode & S_IWGRP) != 0)
+    return fmt::format("run `sudo usermod -aG {} $USER` and log in again", owner->gr_name);
+  return fmt::format(
+      "no group may open it: install weft's udev rules (docs/rig.md), or run `sudo chmod a+rw {}`, "
+      "which lasts until it is plugged out",
+      device.string());
 }
 
 Error cannot_read(const fs::path& file, int error_number) {

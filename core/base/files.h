@@ -75,6 +75,8 @@ std::uint64_t peak_memory_bytes();
 std::string system_reason(int error_number);
 /// The error of a file that cannot be opened for reading, from errno.
 Error cannot_read(const std::filesystem::path& file, int error_number);
+/// What lets this user open a device: the command that joins the group which owns it.
+std::string remedy_of_access(const std::filesystem::path& device);
 /// The error of an output that could not be written, from errno: kCannotCreate or kInputOutput.
 Error cannot_write(const std::filesystem::path& file, int error_number);
 

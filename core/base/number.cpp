@@ -11,12 +11,13 @@ namespace {
 
 constexpr std::size_t kLongestQuote = 40;
 
-bool has_decimal_comma(std::string_view text) {
+/// "2.23" of "2,23"; empty where that is no number either.
+std::string with_a_point(std::string_view text) {
   std::string pointed(text);
   const std::size_t comma = pointed.find(',');
-  if (comma == pointed.npos) return false;
+  if (comma == pointed.npos) return {};
   pointed[comma] = '.';
-  return as_number(pointed).has_value();
+  return as_number(pointed) ? pointed : std::string();
 }
 
 }  // namespace
@@ -31,7 +32,8 @@ std::optional<double> as_number(std::string_view text) {
 
 std::string why_no_number(std::string_view text) {
   const std::string quoted = fmt::format("\"{}\"", text.substr(0, kLongestQuote));
-  if (has_decimal_comma(text)) return quoted + " has a decimal comma, where a point is read";
+  if (const std::string pointed = with_a_point(text); !pointed.empty())
+    return quoted + " has a decimal comma and is no number: write " + pointed;
   double number = 0;
   const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (failed == std::errc::result_out_of_range) return quoted + " is beyond what a number here can be";

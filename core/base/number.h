@@ -25,7 +25,7 @@ std::optional<T> as_whole_number(std::string_view text) {
   return number;
 }
 
-/// Why as_number() finds none, for a person: "\"2,23\" has a decimal comma, where a point is read".
+/// Why as_number() finds none, for a person: "\"2,23\" has a decimal comma and is no number: write 2.23".
 std::string why_no_number(std::string_view text);
 
 /// The words of a line between blanks, tabs and carriage returns.

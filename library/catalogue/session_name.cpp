@@ -14,7 +14,6 @@
 namespace weft::library {
 namespace {
 
-constexpr std::size_t kMostBytes = 100;
 constexpr std::size_t kMostNameBytes = 40;
 constexpr int kMostCount = 99999;
 
@@ -56,14 +55,14 @@ Result<std::string> filled(const std::string& name_template,
 }  // namespace
 
 bool is_session_name(const std::string& name) {
-  return !name.empty() && name.size() <= kMostBytes && name[0] != '.' && name[0] != '-' &&
+  return !name.empty() && name.size() <= kMostSessionNameBytes && name[0] != '.' && name[0] != '-' &&
          plain_name(name) == name;
 }
 
 Result<std::filesystem::path> session_folder(const std::filesystem::path& sessions, const std::string& name) {
   if (!is_session_name(name)) {
     return Error{
-        ErrorKind::kUsage, "this is no name of a session", name.substr(0, kMostBytes), "",
+        ErrorKind::kUsage, "this is no name of a session", name.substr(0, kMostSessionNameBytes), "",
         "use at most 100 bytes of letters, digits, '.', '_' and '-', beginning with a letter, digit or '_'"};
   }
   std::filesystem::path folder = sessions / (name + ".weft");

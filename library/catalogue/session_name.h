@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
@@ -9,8 +10,10 @@
 
 namespace weft::library {
 
-/// Whether a session may be called so: one path segment of at most 100 bytes that is plain (plain_name() of
-/// core/base/text.h), not beginning with a dot or a dash. Its folder is NAME.weft.
+inline constexpr std::size_t kMostSessionNameBytes = 100;
+
+/// Whether a session may be called so: one path segment of at most kMostSessionNameBytes that is plain
+/// (plain_name() of core/base/text.h), not beginning with a dot or a dash. Its folder is NAME.weft.
 bool is_session_name(const std::string& name);
 
 /// The folder of the session of this name in `sessions`, there or not. kUsage if it may not be called so,

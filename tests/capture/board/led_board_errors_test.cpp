@@ -88,15 +88,25 @@ bool holds_for_nobody(const std::function<bool()>& condition) {
   return WIFEXITED(state) && WEXITSTATUS(state) == 0;
 }
 
-TEST(OpeningALedBoard, SaysHowToBeAllowedTo) {
+TEST(OpeningALedBoard, SaysHowToBeAllowedToByTheGroupThatOwnsThePort) {
   if (geteuid() != 0) GTEST_SKIP() << "needs root to become somebody else";
-  Desk desk;
-  const std::string terminal = std::filesystem::read_symlink(desk.terminal());
-  ASSERT_EQ(chmod(terminal.c_str(), 0600), 0);
-  EXPECT_TRUE(holds_for_nobody([&] {
-    const Error error = error_of({terminal});
-    return error.kind == ErrorKind::kNoDevice && error.remedy.find("dialout") != std::string::npos;
-  }));
+  struct Ownership {
+    gid_t group;
+    mode_t mode;
+    const char* remedy;
+  };
+  for (const auto& [group, mode, remedy] :
+       {Ownership{20, 0660, "usermod -aG dialout $USER"}, Ownership{5, 0660, "usermod -aG tty $USER"},
+        Ownership{0, 0600, "no group may open it"}, Ownership{20, 0600, "sudo chmod a+rw"}}) {
+    Desk desk;
+    const std::string terminal = std::filesystem::read_symlink(desk.terminal());
+    ASSERT_EQ(chown(terminal.c_str(), 0, group), 0);
+    ASSERT_EQ(chmod(terminal.c_str(), mode), 0);
+    EXPECT_TRUE(holds_for_nobody([&, remedy = remedy] {
+      const Error error = error_of({terminal});
+      return error.kind == ErrorKind::kNoDevice && error.remedy.find(remedy) != std::string::npos;
+    })) << remedy;
+  }
 }
 
 TEST(OpeningALedBoard, SaysWhoHasItForItselfAlone) {
@@ -120,7 +130,7 @@ TEST(OpeningALedBoard, RefusesAnOlderAndANewerFirmware) {
     const Error error = error_of(desk.options());
     EXPECT_EQ(error.kind, ErrorKind::kBadData) << error.message();
     EXPECT_THAT(error.message(), HasSubstr(version == "older" ? "too old" : "newer than this weft"));
-    EXPECT_THAT(error.remedy, HasSubstr("./dev flash"));
+    EXPECT_THAT(error.remedy, HasSubstr("weft rig flash"));
   }
 }
 
@@ -129,7 +139,18 @@ TEST(OpeningALedBoard, GivesUpOnABoardThatIsSilent) {
   desk.inject(virtual_rig::VirtualBoardFault::kDeaf);
   const Error error = error_of({desk.port(), 0.5});
   EXPECT_EQ(error.kind, ErrorKind::kTryAgain) << error.message();
-  EXPECT_THAT(error.message(), HasSubstr("does not answer"));
+  EXPECT_THAT(error.message(), HasSubstr("does not answer: " + desk.port() +
+                                         ": the port was silent for 0.5 s; its "
+                                         "USB identity is not known"));
+  EXPECT_THAT(error.message(), testing::Not(HasSubstr("flash")));
+}
+
+TEST(OpeningALedBoard, AdvisesFlashingWhereASilentPortIsAnUno) {
+  Desk desk = Desk::with_usb();
+  desk.inject(virtual_rig::VirtualBoardFault::kDeaf);
+  const Error error = error_of({"/dev/ttyACM0", 0.5});
+  EXPECT_THAT(error.message(), HasSubstr("it is \"Arduino Uno\", USB 2341:0043"));
+  EXPECT_THAT(error.remedy, HasSubstr("flash its firmware: weft rig flash /dev/ttyACM0"));
 }
 
 }  // namespace

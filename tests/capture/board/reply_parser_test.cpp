@@ -109,7 +109,7 @@ TEST(BoardReplies, AnotherVersionIsNamedWhateverElseItSays) {
   EXPECT_THAT(newer.error().message(), testing::HasSubstr("newer than this weft"));
   const auto older = facts_in(hello({0, 9, 1, 0}), "port");
   ASSERT_FALSE(older);
-  EXPECT_THAT(older.error().message(), testing::HasSubstr("./dev flash port"));
+  EXPECT_THAT(older.error().message(), testing::HasSubstr("weft rig flash port"));
 }
 
 TEST(BoardReplies, AShortOrForeignReplyIsAgainstTheProtocol) {

@@ -37,7 +37,7 @@ TEST(Number, IsThatOfAPointInALocaleOfCommas) {
 }
 
 TEST(Number, SaysWhyThereIsNone) {
-  EXPECT_EQ(why_no_number("2,23"), "\"2,23\" has a decimal comma, where a point is read");
+  EXPECT_EQ(why_no_number("2,23"), "\"2,23\" has a decimal comma and is no number: write 2.23");
   EXPECT_EQ(why_no_number("nan"), "\"nan\" is no finite number");
   EXPECT_EQ(why_no_number("1e400"), "\"1e400\" is beyond what a number here can be");
   EXPECT_EQ(why_no_number("1.5abc"), "\"1.5abc\" is no number");

@@ -183,10 +183,16 @@ Result<Json> parse_body(std::string_view body) {
 Result<std::string> session_in_body(const Json& body) {
   const Json name = body.value("session", Json());
   if (name.is_null()) return std::string();
-  if (name.is_string() && library::is_session_name(name.get_ref<const std::string&>()))
-    return name.get<std::string>();
-  return refuse("session", fmt::format("is {}", name.dump().substr(0, 60)),
-                "give a name of letters, digits, '.', '_' and '-'");
+  if (!name.is_string()) return refuse("session", "is no text", "give the name of a session");
+  const auto& text = name.get_ref<const std::string&>();
+  if (library::is_session_name(text)) return text;
+  if (text.size() > library::kMostSessionNameBytes) {
+    return refuse(
+        "session",
+        fmt::format("is {} bytes long, longer than {}", text.size(), library::kMostSessionNameBytes),
+        "give a shorter name");
+  }
+  return refuse("session", "is " + name.dump(), "give a name of letters, digits, '.', '_' and '-'");
 }
 
 capture::ScanRequest request_of_rig(const capture::Rig& rig) {
