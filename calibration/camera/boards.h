@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -20,7 +21,8 @@ inline constexpr NumberRange kBoardSquares = {3, 100}, kBoardSquare_mm = {1e-3, 
                              kMarkerShare = {0.3, 0.9};
 
 /// A board as it is printed: the square at the upper left is black; a ChArUco board has markers in its white
-/// squares, row by row, as OpenCV 4.6 draws it.
+/// squares, row by row, as OpenCV 4.6 draws it. Before 4.6 a board of even rows began with a white square: it
+/// is known by its ids.
 struct Board {
   BoardKind kind = BoardKind::kCharuco;
   int squares_x = 0, squares_y = 0;  ///< kBoardSquares; of a checkerboard 4 at least, and not both alike
@@ -28,9 +30,12 @@ struct Board {
   double marker_share = 0.75;        ///< side of a marker over that of a square; kMarkerShare
   std::string dictionary = "DICT_5X5_100";
   int first_marker = 0;  ///< of the dictionary; those after it follow
+  double stretch = 1;  ///< of the print: a square's height over its width, whose geometric mean is square_mm
 
   int markers() const { return squares_x * squares_y / 2; }
   int corners() const { return (squares_x - 1) * (squares_y - 1); }
+  double width_mm() const { return square_mm / std::sqrt(stretch); }   ///< of a square
+  double height_mm() const { return square_mm * std::sqrt(stretch); }  ///< of a square
 };
 
 /// kUsage names a setting that is out of its range, kBadData a dictionary that does not exist or is too
@@ -61,9 +66,10 @@ struct BoardSighting {
   BoardFault fault = BoardFault::kNone;
   std::string why;  ///< with numbers; empty without fault
   std::vector<BoardCorner>
-      corners;         ///< row by row from the upper left; all that were found, also with a fault
-  double edge_px = 0;  ///< width of edges: contrast over steepest slope, median of the blurrier
-                       ///< direction; a sharp lens behind grey_picture gives 2 to 3
+      corners;               ///< row by row from the upper left; all that were found, also with a fault
+  double edge_px = 0;        ///< width of edges: contrast over steepest slope, median of the blurrier
+                             ///< direction; a sharp lens behind grey_picture gives 2 to 3
+  bool old_pattern = false;  ///< a ChArUco board as it was drawn before OpenCV 4.6
 };
 
 struct BoardLimits {

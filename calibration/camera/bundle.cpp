@@ -16,8 +16,8 @@ namespace {
 double squares_of(const std::vector<const BoardView*>& views, const Bundle& bundle) {
   double sum = 0;
   for (std::size_t b = 0; b < views.size(); ++b) {
-    for (const PixelPoint& r :
-         residuals_of(*views[b], bundle.camera, bundle.camera_from_board[b], bundle.board_z_mm[b]))
+    for (const PixelPoint& r : residuals_of(*views[b], bundle.camera, bundle.camera_from_board[b],
+                                            bundle.board_z_mm[b], bundle.log_stretch))
       sum += r.x * r.x + r.y * r.y;
   }
   return sum;
@@ -26,8 +26,10 @@ double squares_of(const std::vector<const BoardView*>& views, const Bundle& bund
 // The bundle after a share of a Gauss-Newton step.
 Bundle stepped(Bundle bundle, const std::vector<std::string>& names, const Vector& camera,
                const std::vector<Vector6>& boards, double share) {
-  for (std::size_t p = 0; p < names.size(); ++p)
-    *number_of(bundle.camera, names[p]) += share * camera[static_cast<Eigen::Index>(p)];
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    double& number = names[p] == kLogStretch ? bundle.log_stretch : *number_of(bundle.camera, names[p]);
+    number += share * camera[static_cast<Eigen::Index>(p)];
+  }
   for (std::size_t b = 0; b < boards.size(); ++b) {
     const Vector6 s = share * boards[b];
     bundle.camera_from_board[b] = moved(bundle.camera_from_board[b], {s[0], s[1], s[2]}, {s[3], s[4], s[5]});
@@ -71,12 +73,28 @@ ParameterCovariance covariance_of(const std::vector<const BoardView*>& views,
   const NormalEquations equations = normal_equations(views, names, bundle);
   const auto n = static_cast<Eigen::Index>(names.size());
   const Matrix camera = solved(reduced(equations), Matrix::Identity(n, n));
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> all =
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> all =
       corner_sigma_px * corner_sigma_px * with_pose_of(equations, table, camera);
+  if (const auto print = std::find(names.begin(), names.end(), kLogStretch); print != names.end()) {
+    std::vector<Eigen::Index> others;
+    for (Eigen::Index i = 0; i < all.rows(); ++i)
+      if (i != print - names.begin()) others.push_back(i);
+    all = all(others, others).eval();
+    names.erase(print);
+  }
   for (const char* group : {"camera_from_rig_rotation", "camera_from_rig_translation_mm"}) {
     for (const char* axis : {".x", ".y", ".z"}) names.push_back(std::string(group) + axis);
   }
   return {std::move(names), std::vector<double>(all.data(), all.data() + all.size())};
+}
+
+double stretch_sigma(const std::vector<const BoardView*>& views, const std::vector<std::string>& terms,
+                     const Bundle& bundle, double corner_sigma_px) {
+  const std::vector<std::string> names = camera_parameters(terms);
+  const auto n = static_cast<Eigen::Index>(names.size());
+  const auto at = std::find(names.begin(), names.end(), kLogStretch) - names.begin();
+  const Matrix variance = solved(reduced(normal_equations(views, names, bundle)), Matrix::Identity(n, n));
+  return corner_sigma_px * std::sqrt(variance(at, at));
 }
 
 std::optional<double> squares_with_pose_fitted(const BoardView& view, const CameraModel& camera,
@@ -105,12 +123,17 @@ Pose pose_by_opencv(const BoardView& view, const CameraModel& camera) {
   return pose_of(turn, shift);
 }
 
+Vec3 place_of(const BoardCorner& corner, double board_z_mm, double log_stretch) {
+  const double half = std::exp(log_stretch / 2);
+  return {corner.u_mm / half, corner.v_mm * half, board_z_mm};
+}
+
 std::vector<PixelPoint> residuals_of(const BoardView& view, const CameraModel& camera,
-                                     const Pose& camera_from_board, double board_z_mm) {
+                                     const Pose& camera_from_board, double board_z_mm, double log_stretch) {
   const CameraModel here = at_origin(camera);
   std::vector<PixelPoint> residuals;
   for (const BoardCorner& corner : view.corners) {
-    const PixelPoint at = seen_by(here, camera_from_board({corner.u_mm, corner.v_mm, board_z_mm}));
+    const PixelPoint at = seen_by(here, camera_from_board(place_of(corner, board_z_mm, log_stretch)));
     residuals.push_back({corner.px.x - at.x, corner.px.y - at.y});
   }
   return residuals;

@@ -37,11 +37,13 @@ std::vector<SeenMarker> detect(const ReducedPicture& picture,
   return markers;
 }
 
-// Column and row of the square that holds each marker: the white ones, row by row from the top.
-std::vector<std::array<int, 2>> marker_squares(const Board& board) {
+// Column and row of the square that holds each marker: the white ones, row by row from the top. In the old
+// pattern the square at the upper left is white.
+std::vector<std::array<int, 2>> marker_squares(const Board& board, bool is_old) {
   std::vector<std::array<int, 2>> squares;
   for (int row = 0; row < board.squares_y; ++row) {
-    for (int column = 1 - row % 2; column < board.squares_x; column += 2) squares.push_back({column, row});
+    const int first = is_old ? row % 2 : 1 - row % 2;
+    for (int column = first; column < board.squares_x; column += 2) squares.push_back({column, row});
   }
   return squares;
 }
@@ -77,7 +79,8 @@ cv::Mat homography_of(const Board& board, const std::vector<std::array<int, 2>>&
 }
 
 // Markers that go on with the board's pattern beyond its sides: it has more squares than were named.
-int beyond_the_board(const Board& board, const cv::Mat& homography, const std::vector<SeenMarker>& others) {
+int beyond_the_board(const Board& board, bool is_old, const cv::Mat& homography,
+                     const std::vector<SeenMarker>& others) {
   int beyond = 0;
   for (const SeenMarker& marker : others) {
     PixelPoint centre;
@@ -86,7 +89,7 @@ int beyond_the_board(const Board& board, const cv::Mat& homography, const std::v
     const double column = std::floor(square.x), row = std::floor(square.y);
     const bool in_a_white_square = std::abs(square.x - column - 0.5) < kAgrees &&
                                    std::abs(square.y - row - 0.5) < kAgrees &&
-                                   std::fmod(column + row, 2) != 0;
+                                   (std::fmod(column + row, 2) != 0) != is_old;
     const bool beside = column >= -1 && row >= -1 && column <= board.squares_x && row <= board.squares_y;
     if (in_a_white_square && beside) ++beyond;
   }
@@ -124,7 +127,7 @@ Grid charuco_corners(View<const std::uint8_t> grey, const Board& board,
 
 BoardSighting find_charuco(View<const std::uint8_t> grey, const Board& board, const BoardLimits& limits) {
   const auto dictionary = *find_dictionary(board.dictionary);
-  const auto squares = marker_squares(board);
+  auto squares = marker_squares(board, false);
   const ReducedPicture picture = reduced(grey);
   std::vector<SeenMarker> markers = detect(picture, dictionary, board.first_marker), others;
   if (markers.size() < 4) {
@@ -147,14 +150,22 @@ BoardSighting find_charuco(View<const std::uint8_t> grey, const Board& board, co
   markers.erase(end, markers.end());
 
   int inliers = 0;
-  const cv::Mat homography = homography_of(board, squares, markers, true, &inliers);
+  cv::Mat homography = homography_of(board, squares, markers, true, &inliers);
+  bool is_old = false;
+  if (board.squares_y % 2 == 0) {  // of odd rows both patterns are one
+    const auto old_squares = marker_squares(board, true);
+    int old_inliers = 0;
+    const cv::Mat old_homography = homography_of(board, old_squares, markers, true, &old_inliers);
+    if (old_inliers > inliers)
+      is_old = true, squares = old_squares, homography = old_homography, inliers = old_inliers;
+  }
   if (homography.empty() || inliers < 0.8 * static_cast<double>(markers.size())) {
     return faulty(
         BoardFault::kWrongSquares,
         fmt::format("{} markers were read, and {} of them lie where a board of {} x {} squares has them",
                     markers.size() + others.size(), inliers, board.squares_x, board.squares_y));
   }
-  if (const int beyond = beyond_the_board(board, homography, others); beyond > 0) {
+  if (const int beyond = beyond_the_board(board, is_old, homography, others); beyond > 0) {
     return faulty(BoardFault::kWrongSquares, fmt::format("{} markers go on beyond a board of {} x {} squares",
                                                          beyond, board.squares_x, board.squares_y));
   }
@@ -166,7 +177,9 @@ BoardSighting find_charuco(View<const std::uint8_t> grey, const Board& board, co
                               "beside it",
                               side));
   }
-  return judged(grey, grid, limits);
+  BoardSighting sighting = judged(grey, grid, limits);
+  sighting.old_pattern = is_old;
+  return sighting;
 }
 
 }  // namespace weft::calibration

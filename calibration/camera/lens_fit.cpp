@@ -6,9 +6,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <opencv2/calib3d.hpp>
 #include <optional>
+#include <utility>
 
 #include "calibration/camera/bundle.h"
 #include "calibration/camera/opencv_camera.h"
@@ -22,6 +24,8 @@ using Terms = std::vector<std::string>;
 
 constexpr std::size_t kFolds = 5;
 constexpr double kStandardErrors = 2;
+constexpr double kStretchSigmas = 4, kLeastStretch = 5e-4;
+constexpr double kGoodMisfit_px = 0.2;  ///< a board on the table that misses by less is flat
 
 Terms with(Terms terms, const Terms& more) {
   terms.insert(terms.end(), more.begin(), more.end());
@@ -156,14 +160,43 @@ std::optional<Terms> choose_terms(const std::vector<const BoardView*>& views, co
 double sigma_of(const std::vector<const BoardView*>& views, const Bundle& bundle) {
   double squares = 0, freedom = -6;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    for (const PixelPoint& r :
-         residuals_of(*views[i], bundle.camera, bundle.camera_from_board[i], bundle.board_z_mm[i])) {
+    for (const PixelPoint& r : residuals_of(*views[i], bundle.camera, bundle.camera_from_board[i],
+                                            bundle.board_z_mm[i], bundle.log_stretch)) {
       squares += r.x * r.x + r.y * r.y;
       freedom += 2;
     }
     freedom -= 6;
   }
   return std::sqrt(squares / freedom);
+}
+
+// The print's stretch as these boards show it; `bundle`, of k1 and k2, is with it where it is used. What a
+// lens that is not centred does to boards is no stretch.
+PrintStretch stretch_of(const std::vector<const BoardView*>& views, Bundle& bundle) {
+  const Terms terms = {"k1", "k2", "p1", "p2", kLogStretch};
+  Bundle stretched = bundle;
+  PrintStretch print = {0, std::numeric_limits<double>::infinity(), false};
+  if (!fit(views, terms, stretched)) return print;
+  const double sigma = stretch_sigma(views, terms, stretched, sigma_of(views, stretched));
+  if (!std::isfinite(sigma)) return print;
+  print = {std::expm1(stretched.log_stretch), sigma, false};
+  print.is_used = std::abs(print.share) > std::max(kStretchSigmas * sigma, kLeastStretch);
+  if (!print.is_used) return print;
+  stretched = bundle;
+  print.is_used = fit(views, {"k1", "k2", kLogStretch}, stretched);
+  if (print.is_used) bundle = stretched;
+  return print;
+}
+
+// Gives corners the places where they were printed; by what they were stretched.
+double stretch(std::vector<BoardView>& views, Bundle& bundle) {
+  for (BoardView& view : views) {
+    for (BoardCorner& corner : view.corners) {
+      const Vec3 place = place_of(corner, 0, bundle.log_stretch);
+      corner.u_mm = place.x, corner.v_mm = place.y;
+    }
+  }
+  return std::exchange(bundle.log_stretch, 0);
 }
 
 Result<void> check_focal(const CameraModel& camera, const ParameterCovariance& covariance,
@@ -240,57 +273,73 @@ LensFit facts_of(std::span<const BoardView> views, const std::vector<bool>& used
   return out;
 }
 
+// Says in `used` which boards fit the others; false where one does not and is to be left out.
+Result<bool> leave_out_misfits(const std::vector<BoardView>& views, const Bundle& bundle,
+                               const LensOptions& options, std::vector<bool>& used) {
+  std::vector<double> rms;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    rms.push_back(
+        rms_of(residuals_of(views[i], bundle.camera, bundle.camera_from_board[i], bundle.board_z_mm[i])));
+  const double most = options.most_misfit * median(rms);
+  for (std::size_t i = 0; i < views.size(); ++i)
+    used[i] = rms[i] <= (i == options.table ? std::max(most, kGoodMisfit_px) : most);
+  if (!used[options.table]) {
+    return Error{ErrorKind::kBadData, "the board on the table does not fit the others",
+                 views[options.table].name,
+                 fmt::format("its corners miss by {:.2f} pixels, the others by {:.2f}", rms[options.table],
+                             median(rms)),
+                 "lay the board flat and photograph it again"};
+  }
+  const auto left = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
+  if (left == used.size()) return true;
+  if (left >= needed(options)) return false;
+  std::string misfits;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!used[i])
+      misfits += fmt::format("; {}: its corners miss by {:.2f} pixels, the median is {:.2f} (bent or moved?)",
+                             views[i].name, rms[i], median(rms));
+  }
+  return too_few(left, needed(options), misfits);
+}
+
 }  // namespace
 
 Result<LensFit> fit_lens(std::span<const BoardView> views, Size size, const LensOptions& options) {
   if (const Result<void> ok = check_views(views, options); !ok) return ok.error();
   std::vector<bool> used(views.size(), true);
-  std::vector<LensTrial> trials;
   for (bool again = false;; again = true) {
+    std::vector<BoardView> printed(views.begin(), views.end());
     std::vector<const BoardView*> kept;
     std::size_t table = 0;
-    for (std::size_t i = 0; i < views.size(); ++i) {
+    for (std::size_t i = 0; i < printed.size(); ++i) {
       if (!used[i]) continue;
       if (i == options.table) table = kept.size();
-      kept.push_back(&views[i]);
+      kept.push_back(&printed[i]);
     }
     std::optional<Bundle> bundle = start_of(kept, size, table, options.thickness_mm);
     if (!bundle || !fit(kept, {"k1", "k2"}, *bundle)) return too_alike("no camera could be fitted to them");
+    PrintStretch print = stretch_of(kept, *bundle);
+    double log_stretch = stretch(printed, *bundle);
 
     if (!again) {  // boards that do not fit the others go, once
-      std::vector<double> rms;
-      for (std::size_t i = 0; i < kept.size(); ++i)
-        rms.push_back(rms_of(
-            residuals_of(*kept[i], bundle->camera, bundle->camera_from_board[i], bundle->board_z_mm[i])));
-      const double most = options.most_misfit * median(rms);
-      for (std::size_t i = 0; i < views.size(); ++i) used[i] = rms[i] <= most;
-      if (!used[options.table]) {
-        return Error{ErrorKind::kBadData, "the board on the table does not fit the others",
-                     views[options.table].name,
-                     fmt::format("its corners miss by {:.2f} pixels, the others by {:.2f}",
-                                 rms[options.table], median(rms)),
-                     "lay the board flat and photograph it again"};
-      }
-      if (std::find(used.begin(), used.end(), false) != used.end()) {
-        const auto left = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
-        if (left >= needed(options)) continue;
-        std::string misfits;
-        for (std::size_t i = 0; i < views.size(); ++i) {
-          if (!used[i])
-            misfits +=
-                fmt::format("; {}: its corners miss by {:.2f} pixels, the median is {:.2f} (bent or moved?)",
-                            views[i].name, rms[i], median(rms));
-        }
-        return too_few(left, needed(options), misfits);
-      }
+      const Result<bool> all_fit = leave_out_misfits(printed, *bundle, options, used);
+      if (!all_fit) return all_fit.error();
+      if (!*all_fit) continue;
     }
+    const Terms of_print = print.is_used ? Terms{kLogStretch} : Terms{};
     // More terms only add to what is not known.
     const ParameterCovariance least =
-        covariance_of(kept, {"k1", "k2"}, *bundle, table, sigma_of(kept, *bundle));
+        covariance_of(kept, with({"k1", "k2"}, of_print), *bundle, table, sigma_of(kept, *bundle));
     if (const Result<void> ok = check_focal(bundle->camera, least, options); !ok) return ok.error();
-    const std::optional<Terms> terms = choose_terms(kept, *bundle, trials);
-    if (!terms || !fit(kept, *terms, *bundle)) return too_alike("no camera could be fitted to parts of them");
-    LensFit out = facts_of(views, used, *bundle, table, *terms, options.thickness_mm);
+    std::vector<LensTrial> trials;
+    const std::optional<Terms> lens = choose_terms(kept, *bundle, trials);
+    const Terms terms = lens ? with(*lens, of_print) : of_print;
+    if (!lens || !fit(kept, terms, *bundle)) return too_alike("no camera could be fitted to parts of them");
+    log_stretch += stretch(printed, *bundle);
+    LensFit out = facts_of(printed, used, *bundle, table, terms, options.thickness_mm);
+    if (print.is_used)
+      print = {std::expm1(log_stretch), stretch_sigma(kept, terms, *bundle, out.corner_sigma_px), true};
+    out.print = print;
     out.trials = std::move(trials);
     if (const Result<void> ok = check_focal(out.camera, out.covariance, options); !ok) return ok.error();
     return out;

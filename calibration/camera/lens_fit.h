@@ -47,6 +47,14 @@ struct BoardFit {
   bool used = true;                     ///< false: its residual is over LensOptions::most_misfit
 };
 
+/// How much longer the print's squares are down than across, as a share; their mean is taken for what was
+/// told.
+struct PrintStretch {
+  double share = 0;
+  double sigma = 0;      ///< infinite where the boards do not tell it
+  bool is_used = false;  ///< it is above its noise, and places of corners were corrected by it
+};
+
 struct LensFit {
   CameraModel camera;
   /// fx, fy, cx, cy, the distortion terms that were fitted, and the pose as "camera_from_rig_rotation.x" ...
@@ -57,12 +65,16 @@ struct LensFit {
   std::vector<LensTrial> trials;
   double rms_px = 0;           ///< of the boards used
   double corner_sigma_px = 0;  ///< along x and along y, as the residuals show it
+  PrintStretch print;
 };
 
 /// Fits focal lengths, principal point, distortion and all poses by least squares over all corners (Zhang,
 /// PAMI 2000). cv::calibrateCamera finds them. Gauss-Newton on the same sum then goes to its minimum, to
 /// 1e-9, and gives the covariance sigma^2 (J^T J)^-1, which OpenCV does not. k1 and k2 are always fitted; p1,
 /// p2 and k3 where they lower the error of held-out boards (five folds) by over two standard errors.
+///
+/// Printers stretch by up to a percent along one side. Where that is above four times its own sigma and above
+/// 0.05 percent, it is fitted too.
 ///
 /// The rig frame follows from the board on the table: origin at its centre, x along its rows, z = 0 at
 /// thickness_mm below what is printed.

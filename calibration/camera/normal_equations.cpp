@@ -33,6 +33,10 @@ class Model {
   Model(const CameraModel& camera, const std::vector<std::string>& names) : camera_(at_origin(camera)) {
     for (const std::string& name : names) {
       const double h = step_of(name);
+      if (name == kLogStretch) {
+        steps_.push_back({camera_, camera_, 0});
+        continue;
+      }
       CameraModel up = camera_, down = camera_;
       *number_of(up, name) += h;
       *number_of(down, name) -= h;
@@ -47,6 +51,12 @@ class Model {
     CornerRows out = {Eigen::Matrix<double, 2, Eigen::Dynamic>(2, static_cast<Eigen::Index>(steps_.size())),
                       {}};
     for (std::size_t p = 0; p < steps_.size(); ++p) {
+      if (steps_[p].h == 0) {
+        const Vec3 by = kStretchStep / 2 * (pose.rotation * Vec3{-point.x, point.y, 0});
+        out.camera.col(static_cast<Eigen::Index>(p)) =
+            slope(seen_by(camera_, here + by), seen_by(camera_, here - by), kStretchStep);
+        continue;
+      }
       out.camera.col(static_cast<Eigen::Index>(p)) =
           slope(seen_by(steps_[p].up, here), seen_by(steps_[p].down, here), steps_[p].h);
     }
@@ -62,7 +72,7 @@ class Model {
  private:
   struct Step {
     CameraModel up, down;
-    double h;
+    double h;  ///< 0: it is the print that changes
   };
   static Eigen::Vector2d slope(PixelPoint up, PixelPoint down, double h) {
     return {(up.x - down.x) / (2 * h), (up.y - down.y) / (2 * h)};
@@ -84,7 +94,7 @@ NormalEquations normal_equations(const std::vector<const BoardView*>& views,
     Matrix6 board = Matrix6::Zero();
     Vector6 gradient = Vector6::Zero();
     for (const BoardCorner& corner : views[b]->corners) {
-      const Vec3 point = {corner.u_mm, corner.v_mm, bundle.board_z_mm[b]};
+      const Vec3 point = place_of(corner, bundle.board_z_mm[b], bundle.log_stretch);
       const PixelPoint at = model.at(bundle.camera_from_board[b], point);
       const Eigen::Vector2d error(at.x - corner.px.x, at.y - corner.px.y);
       const CornerRows rows = model.rows(bundle.camera_from_board[b], point);

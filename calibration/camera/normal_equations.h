@@ -18,9 +18,9 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Columns6 = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-inline constexpr double kTurnStep = 1e-6, kShiftStep_mm = 1e-4;
+inline constexpr double kTurnStep = 1e-6, kShiftStep_mm = 1e-4, kStretchStep = 1e-4;
 
-/// fx, fy, cx, cy and these distortion terms.
+/// fx, fy, cx, cy and these terms.
 std::vector<std::string> camera_parameters(const std::vector<std::string>& distortion);
 
 /// Where a camera whose own pose is unity sees a point of its frame.

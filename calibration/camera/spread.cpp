@@ -117,8 +117,8 @@ std::array<std::vector<Sample>, 3> samples_beside(const RawFrame& frame, PixelPo
 std::vector<BoardEdge> find_edges(const RawFrame& frame, const CameraModel& camera,
                                   const Pose& rig_from_board, const Board& board) {
   const auto corner = [&](int i, int j) {
-    const Vec3 p = project(camera, rig_from_board({(i - board.squares_x / 2.0) * board.square_mm,
-                                                   (board.squares_y / 2.0 - j) * board.square_mm, 0}));
+    const Vec3 p = project(camera, rig_from_board({(i - board.squares_x / 2.0) * board.width_mm(),
+                                                   (board.squares_y / 2.0 - j) * board.height_mm(), 0}));
     return PixelPoint{p.x, p.y};
   };
   const bool has_markers = board.kind == BoardKind::kCharuco;

@@ -196,7 +196,9 @@ Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options,
   const Result<FittedBoards> fitted = fit_boards(options, context);
   if (!fitted) return fitted.error();
   const auto& [board, from, all, viewed, views, fit] = *fitted;
-  const Result<std::vector<BoardEdge>> edges = edges_of(options.input, board.board, views, fit, context);
+  Board printed = board.board;
+  if (fit.print.is_used) printed.stretch = 1 + fit.print.share;
+  const Result<std::vector<BoardEdge>> edges = edges_of(options.input, printed, views, fit, context);
   if (!edges) return edges.error();
   if (context.stop.stop_requested()) return interrupted();
 

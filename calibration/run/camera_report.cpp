@@ -112,6 +112,19 @@ double moved_mm(const CameraModel& before, const CameraModel& now) {
   return std::max(most, length(centre_of(now) - centre_of(before)));
 }
 
+std::string stretch_words(const PrintStretch& print) {
+  return fmt::format(
+      "The print is {:.2f} percent longer {} (sigma {:.2f}), and was taken so: square_mm is the mean of both",
+      100 * std::abs(print.share), print.share > 0 ? "down than across" : "across than down",
+      100 * print.sigma);
+}
+
+/// Whether photographs show a board that was drawn before OpenCV 4.6.
+bool has_old_pattern(const CameraFitFacts& facts) {
+  return std::ranges::any_of(
+      facts.viewed, [&](std::size_t i) { return facts.photographs.photographs[i].sighting.old_pattern; });
+}
+
 std::vector<Verdict> verdicts_of(const CameraFitFacts& facts, const Figures& f) {
   std::vector<Verdict> verdicts;
   if (f.coverage < kLeastCoverage) {
@@ -125,6 +138,10 @@ std::vector<Verdict> verdicts_of(const CameraFitFacts& facts, const Figures& f) 
         {"WEAK_MAPPING",
          fmt::format("A pixel's place on the table is known to {:.3f} mm only (predicted, rms)", sigma_mm),
          "take more photographs of the board, tilted by 20 to 40 degrees to all sides"});
+  }
+  if (facts.fit.print.is_used) {
+    verdicts.push_back({"PRINT_STRETCHED", stretch_words(facts.fit.print),
+                        "measure ten squares across and ten down, and say the mean of one as square_mm"});
   }
   for (std::size_t i = 0; i < facts.views.size(); ++i) {
     const BoardFit& board = facts.fit.boards[i];
@@ -255,6 +272,12 @@ Json numbers_of(const CameraFitFacts& facts, const Figures& f) {
           {"rms_px", facts.fit.rms_px},
           {"corner_sigma_px", facts.fit.corner_sigma_px},
           {"coverage", f.coverage},
+          {"print_stretch_percent",
+           std::isfinite(facts.fit.print.sigma)
+               ? measured_json({100 * facts.fit.print.share, 100 * facts.fit.print.sigma})
+               : Json()},
+          {"print_stretch_used", facts.fit.print.is_used},
+          {"old_pattern", has_old_pattern(facts)},
           {"tags", facts.fiducials.size()},
           {"photographs", std::move(boards)},
           {"trials", std::move(trials)},
@@ -297,9 +320,12 @@ CalibrationReport camera_report(const CameraFitFacts& facts) {
         fmt::format(" In the corner red looks {:+.2f} and blue {:+.2f} pixels farther out than green.",
                     facts.lateral->corner_px[0], facts.lateral->corner_px[1]);
   }
+  if (has_old_pattern(facts))
+    report.summary += " This board has the pattern of before OpenCV 4.6, and was read so.";
   report.verdicts = verdicts_of(facts, f);
   report.numbers = numbers_of(facts, f);
 
+  const PrintStretch& print = facts.fit.print;
   report::Table numbers = {{"", "value"}, {}};
   numbers.rows = {
       {"focal length along x, pixels", words(f.fx, 2)},
@@ -312,6 +338,10 @@ CalibrationReport camera_report(const CameraFitFacts& facts) {
       {"tilt of the camera, degrees", words(f.tilt_deg, 4)},
       {"mm a pixel at the frame's centre", words(f.scale_mm, 6)},
       {"noise of a corner along x or y, pixels", fmt::format("{:.3f}", facts.fit.corner_sigma_px)},
+      {"the print is longer down than across by, percent",
+       std::isfinite(print.sigma)
+           ? words({100 * print.share, 100 * print.sigma}, 3) + (print.is_used ? "" : ", not used")
+           : "not known"},
       {"tags on the table", fmt::format("{}", facts.fiducials.size())}};
   if (const auto& spread = facts.spread) {
     numbers.rows.push_back(

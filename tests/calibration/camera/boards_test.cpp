@@ -8,6 +8,7 @@
 #include <cmath>
 #include <opencv2/aruco.hpp>
 #include <opencv2/aruco/charuco.hpp>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "calibration/camera/markers.h"
@@ -75,6 +76,7 @@ TEST(FindBoard, PutsCornersOfBothKindsWithinAFewHundredthsOfAPixel) {
       const BoardSighting sighting = find_board(grey_of(scene).plane(), board);
       ASSERT_EQ(sighting.fault, BoardFault::kNone) << name_of(sighting.fault) << ": " << sighting.why;
       EXPECT_EQ(sighting.corners.size(), static_cast<std::size_t>(board.corners()));
+      EXPECT_FALSE(sighting.old_pattern);
       const Offsets offsets = errors_of(scene, sighting);
       EXPECT_NEAR(offsets.mean_x, 0, 0.015);
       EXPECT_NEAR(offsets.mean_y, 0, 0.015);
@@ -82,6 +84,45 @@ TEST(FindBoard, PutsCornersOfBothKindsWithinAFewHundredthsOfAPixel) {
       EXPECT_LT(offsets.farthest, 0.25);
       EXPECT_LT(sighting.edge_px, 4.5);
     }
+  }
+}
+
+/// A board as OpenCV drew it before 4.6, straight from above: white at the upper left where rows are even.
+cv::Mat old_charuco(const Board& board, int square_px) {
+  cv::Mat picture((board.squares_y + 2) * square_px, (board.squares_x + 2) * square_px, CV_8U,
+                  cv::Scalar(255));
+  const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_5X5_100);
+  const int side = static_cast<int>(std::lround(board.marker_share * square_px)),
+            inset = (square_px - side) / 2;
+  for (int row = 0, id = 0; row < board.squares_y; ++row) {
+    for (int column = 0; column < board.squares_x; ++column) {
+      const cv::Rect square((column + 1) * square_px, (row + 1) * square_px, square_px, square_px);
+      if ((row + column) % 2 == 1) {
+        picture(square).setTo(0);
+        continue;
+      }
+      cv::Mat marker;
+      cv::aruco::drawMarker(dictionary, id++, side, marker);
+      marker.copyTo(picture(cv::Rect(square.x + inset, square.y + inset, side, side)));
+    }
+  }
+  cv::GaussianBlur(picture, picture, {0, 0}, 0.8);
+  return picture;
+}
+
+TEST(FindBoard, TakesABoardOfBeforeOpenCv46ByItsIds) {
+  for (const auto& [columns, rows] : {std::pair{9, 6}, {11, 8}, {7, 10}, {8, 6}}) {
+    Board board = charuco();
+    board.squares_x = columns, board.squares_y = rows, board.marker_share = 0.75;
+    constexpr int kSquare_px = 60;
+    const cv::Mat picture = old_charuco(board, kSquare_px);
+    const View<const std::uint8_t> grey(picture.ptr(), {picture.cols, picture.rows}, picture.cols);
+    const BoardSighting sighting = find_board(grey, board);
+    ASSERT_EQ(sighting.fault, BoardFault::kNone) << columns << " x " << rows << ": " << sighting.why;
+    EXPECT_TRUE(sighting.old_pattern);
+    ASSERT_EQ(sighting.corners.size(), static_cast<std::size_t>(board.corners()));
+    EXPECT_NEAR(sighting.corners[0].px.x, 2 * kSquare_px - 0.5, 0.1) << columns << " x " << rows;
+    EXPECT_NEAR(sighting.corners[0].px.y, 2 * kSquare_px - 0.5, 0.1);
   }
 }
 

@@ -84,6 +84,60 @@ TEST(FitLens, TakesTangentialTermsOnlyWhereTheLensHasThem) {
   EXPECT_LT(chosen->held_out_px, with->trials.front().held_out_px);
 }
 
+/// Boards whose print is longer by this share down than across, in the same mean size.
+std::vector<BoardView> views_of_stretched(const BoardRig& rig, double share, int seed) {
+  std::vector<BoardView> views = views_of(rig, 0.1, seed);
+  const double half = std::sqrt(1 + share);
+  for (BoardView& view : views) {  // what was told of a place is off, what is seen is not
+    for (auto& corner : view.corners) corner.u_mm *= half, corner.v_mm /= half;
+  }
+  return views;
+}
+
+TEST(FitLens, FindsThePrintsStretchAndTheFocalLengthBehindIt) {
+  const BoardRig rig;
+  for (const double share : {0.005, -0.005, 0.01}) {
+    const auto fit = fit_lens(views_of_stretched(rig, share, 4), rig.camera.size, {});
+    ASSERT_TRUE(fit) << fit.error().message();
+    ASSERT_TRUE(fit->print.is_used) << "found " << fit->print.share << ", sigma " << fit->print.sigma;
+    EXPECT_NEAR(fit->print.share, share, 4 * fit->print.sigma);
+    EXPECT_LT(fit->print.sigma, 5e-4);
+    EXPECT_LT(std::abs(fit->camera.fx - rig.camera.fx), 4 * number_of(*fit, "fx")) << "stretch " << share;
+    EXPECT_NEAR(fit->corner_sigma_px, 0.1, 0.006);
+    EXPECT_EQ(number_of(*fit, "log_stretch"), -1) << "a camera's covariance has the camera's parameters";
+  }
+}
+
+TEST(FitLens, LeavesAPrintThatIsNotStretchedAsItWasTold) {
+  double squares = 0;
+  constexpr int kSeeds = 10;
+  BoardRig rig;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    if (seed > kSeeds / 2) rig.camera.p1 = 2e-3, rig.camera.p2 = -1e-3;
+    const auto fit = fit_lens(views_of(rig, 0.1, seed), rig.camera.size, {});
+    ASSERT_TRUE(fit) << fit.error().message();
+    EXPECT_FALSE(fit->print.is_used) << "seed " << seed << ": " << fit->print.share << ", sigma "
+                                     << fit->print.sigma;
+    squares += std::pow(fit->print.share / fit->print.sigma, 2) / kSeeds;
+  }
+  // Chi-square of 10 degrees of freedom over 10: 0.15 to 3 in 998 of 1000 cases.
+  EXPECT_GT(squares, 0.15);
+  EXPECT_LT(squares, 3);
+}
+
+TEST(FitLens, TakesABoardOnTheTableThatMissesByAnEighthOfAPixel) {
+  const BoardRig rig;
+  std::vector<BoardView> views = views_of(rig, 0.02, 1);
+  for (auto& corner : views[0].corners) corner.px.x += 3e-5 * corner.u_mm * corner.u_mm;
+  const auto fit = fit_lens(views, rig.camera.size, {});
+  ASSERT_TRUE(fit) << fit.error().message();
+  EXPECT_TRUE(fit->boards[0].used);
+  for (auto& corner : views[0].corners) corner.px.x += 3e-4 * corner.u_mm * corner.u_mm;
+  const auto bent = fit_lens(views, rig.camera.size, {});
+  ASSERT_FALSE(bent);
+  EXPECT_THAT(bent.error().message(), HasSubstr("lay the board flat"));
+}
+
 TEST(FitLens, PutsTheTableBelowTheBoardByItsThickness) {
   const BoardRig rig;
   const auto thin = fit_lens(views_of(rig, 0, 1), rig.camera.size, {.thickness_mm = 0});
