@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <utility>
 
@@ -14,8 +16,24 @@ namespace weft::library {
 namespace {
 
 constexpr double kDarkLevel = 0.1;  // of the median level: no LED lit, or one did not light
+constexpr double kAlike = 0.05;     // of a frame's level: two photographs under one light
 
 using Indices = std::vector<std::size_t>;
+
+/// The number that a name ends with, "DSC_9999.NEF"; and how many of its digits can be counted to.
+struct Count {
+  std::size_t number = 0, end = 0;
+};
+Count count_of(const std::string& label) {
+  const std::string stem = std::filesystem::path(label).stem().string();
+  Count count = {0, 1};
+  for (auto digit = stem.rbegin();
+       digit != stem.rend() && *digit >= '0' && *digit <= '9' && count.end < 1'000'000; ++digit) {
+    count.number += static_cast<std::size_t>(*digit - '0') * count.end;
+    count.end *= 10;
+  }
+  return count;
+}
 
 /// Brings frames and LEDs together, step by step; a step that refuses ends it.
 class Decider {
@@ -25,7 +43,10 @@ class Decider {
       : frames_(frames), light_(light), model_(model), options_(options) {}
 
   LedDecision decided() {
-    if (check_most() && find_dark() && check_numbers() && put_in_order() && ask_light()) warn();
+    // What names say is wrong says more than that two frames are one.
+    if (check_most() && (is_by_number() || find_copies()) && find_dark() && check_numbers() &&
+        find_copies() && put_in_order() && ask_light())
+      warn();
     return std::move(decision_);
   }
 
@@ -53,9 +74,33 @@ class Decider {
     return !is_too_many || refuse_more(frames_.size());
   }
 
-  bool find_dark() {
+  /// Two photographs of one thing differ by their noise.
+  bool find_copies() {
+    for (std::size_t a = 0; a < frames_.size(); ++a) {
+      for (std::size_t b = a + 1; b < frames_.size(); ++b) {
+        const double level = level_of(light_[a]);
+        if (level == 0 || level >= 1 || light_[a] != light_[b]) continue;
+        return refuse("two frames are one photograph",
+                      fmt::format("{} and {} hold the same counts{}", label(a), label(b),
+                                  is_any_dark() ? "" : ", and no frame is dark"),
+                      "take the copy out, and look for the frame in whose place it is");
+      }
+    }
+    return true;
+  }
+
+  std::vector<double> levels() const {
     std::vector<double> levels;
     for (const auto& light : light_) levels.push_back(level_of(light));
+    return levels;
+  }
+  bool is_any_dark() const {
+    const std::vector<double> all = levels();
+    return std::ranges::min(all) < kDarkLevel * median(all);
+  }
+
+  bool find_dark() {
+    const std::vector<double> levels = this->levels();
     const double dark_below = kDarkLevel * median(levels);
     for (std::size_t f = 0; f < frames_.size(); ++f) {
       const bool is_dark = levels[f] < dark_below;
@@ -98,8 +143,31 @@ class Decider {
         first = f;
       }
     }
+    if (!dark_ && lit_.size() == model_.leds.size() + 1) return refuse_no_dark();
     if (lit_.size() > model_.leds.size()) return refuse_more(lit_.size());
     return lit_.size() == model_.leds.size() || check_missing();
+  }
+
+  bool refuse_no_dark() {
+    const std::vector<double> all = levels();
+    const auto darkest = static_cast<std::size_t>(std::ranges::min_element(all) - all.begin());
+    std::string alike;
+    double least = kAlike;
+    for (std::size_t a = 0; a < frames_.size(); ++a) {
+      for (std::size_t b = a + 1; b < frames_.size(); ++b) {
+        std::vector<double> apart = light_[a];
+        for (std::size_t i = 0; i < apart.size(); ++i) apart[i] = std::abs(apart[i] - light_[b][i]);
+        if (level_of(apart) >= least * all[a]) continue;
+        least = level_of(apart) / all[a];
+        alike = fmt::format("; {} and {} are of one light", label(a), label(b));
+      }
+    }
+    return refuse(
+        "no frame is dark",
+        fmt::format("{} frames and {} LEDs, and the darkest, {}, has {:.0f} percent of the others' light{}",
+                    frames_.size(), led_count(), label(darkest), 100 * all[darkest] / median(all), alike),
+        "take the frame out that is no dark shot though it should be one (a LED or a lamp was on), or "
+        "tell sessions apart by --gap SECONDS");
   }
 
   bool check_missing() {
@@ -210,7 +278,7 @@ class Decider {
         decision_.opinions.push_back({"light, second", of_all(decision_.light->second)});
     }
     if (options_.order == FrameOrder::kLight) return take_light();
-    if (is_disputed_) return refuse_disputed();
+    if (is_disputed_) return settle_dispute() || refuse_disputed();
     if (!decision_.light) {
       decision_.light_says = "the light was not asked: it takes five lit frames";
       return true;
@@ -225,6 +293,31 @@ class Decider {
                ? fmt::format("; by the light one assignment stands alone, {:.1f} times better than the next",
                              times)
                : "; the light cannot tell either";
+  }
+
+  /// A counter that began again puts the last names first; the light says so where one assignment stands
+  /// alone.
+  bool settle_dispute() {
+    if (lit_.size() != model_.leds.size()) return false;
+    const std::vector<int> times = counted(*order_of_times(frames_));
+    const Indices by_name = order_of_names(frames_), by_time = *order_of_times(frames_);
+    const auto first = std::ranges::find(by_time, by_name.front());
+    const bool began_again = std::equal(first, by_time.end(), by_name.begin()) &&
+                             std::equal(by_time.begin(), first, by_name.begin() + (by_time.end() - first));
+    const Count last = count_of(label(by_name.back())), next = count_of(label(by_name.front()));
+    const bool at_its_end = last.end >= 1000 && last.end == next.end &&
+                            last.number + frames_.size() > last.end && next.number <= frames_.size();
+    if (!began_again || !at_its_end || !decision_.light || !decision_.light->is_alone() ||
+        of_lit(times) != decision_.light->leds)
+      return false;
+    decision_.leds = times;
+    decision_.by = "times";
+    decision_.light_says = "the light agrees with times" + light_words();
+    decision_.warnings.push_back(
+        fmt::format("the camera's counter began again: {} follows {}, by time and light",
+                    label(by_name.front()), label(*std::prev(first))));
+    take_sureness();
+    return true;
   }
 
   bool refuse_disputed() {
