@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "calibration/lights/poses_ahead.h"
+#include "calibration/lights/sheet_stories.h"
 #include "calibration/run/calibrate_patches.h"
 #include "calibration/run/described.h"
 #include "calibration/run/lights_report.h"
@@ -108,6 +109,8 @@ class LightsCalibration {
   Result<void> fit_clean_paper();
   Result<void> leave_out_faults(bool& any);
   Result<void> judge();
+  std::string words_of_misfit() const;
+  std::optional<Error> find_story() const;
   Result<void> predict();
   Result<void> run_per_pixel();
   Result<void> run_seed();
@@ -219,6 +222,7 @@ Result<void> LightsCalibration::fit_clean_paper() {
     context_.progress("fit", evidence_.fit ? 0.5 : 0);
     Result<LightFit> fit = fit_lights(evidence_.start, evidence_.readings, fit_options());
     if (!fit) {
+      if (const std::optional<Error> story = find_story()) return *story;
       Error error = std::move(fit).error();
       error.where = fmt::format("{}: {}", options_.input.string(), error.where);
       return error;
@@ -267,6 +271,7 @@ Result<void> LightsCalibration::leave_out_faults(bool& any) {
   any = faulty > 0;
   if (static_cast<double>(faulty) > kMostFaultyShare * static_cast<double>(spots.size()) &&
       !options_.accept_misfit) {
+    if (const std::optional<Error> story = find_story()) return *story;
     const PaperFault& largest = evidence_.faults.front();
     return bad(ErrorKind::kBadData, "the paper is not an even, flat white", options_.input.string(),
                fmt::format("{:.0f} percent of it depart from the fit, most at u = {:.0f} mm, v = {:.0f} mm "
@@ -279,24 +284,75 @@ Result<void> LightsCalibration::leave_out_faults(bool& any) {
   return {};
 }
 
+std::string words_of(const ExchangedLeds& exchanged) {
+  std::vector<std::string> words;
+  for (std::size_t k = 0; k < exchanged.as.size(); ++k) {
+    const std::size_t other = exchanged.as[k];
+    const bool is_pair = exchanged.as[other] == k;
+    if (other == k || (is_pair && other < k)) continue;
+    words.push_back(is_pair ? fmt::format("the wires of LEDs {} and {} are exchanged", k + 1, other + 1)
+                            : fmt::format("LED {} lights from where LED {} should", k + 1, other + 1));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+// What makes the sheets contradict each other, where one story explains them.
+std::optional<Error> LightsCalibration::find_story() const {
+  const auto told = [&](std::string what, std::string why, std::string remedy) {
+    return bad(ErrorKind::kBadData, std::move(what), options_.input.string(), std::move(why),
+               std::move(remedy));
+  };
+  if (const auto exchanged = find_exchanged(evidence_.start, evidence_.readings)) {
+    return told(
+        words_of(*exchanged),
+        fmt::format(
+            "by where the LEDs were measured to be the sheets read {:.0f} percent off, and {:.1f} with "
+            "these exchanged",
+            100 * exchanged->rms_before, 100 * exchanged->rms_after),
+        "exchange the wires and photograph the sheets again, or exchange the LEDs' places in rig.toml");
+  }
+  if (!evidence_.fit) return std::nullopt;
+  const auto room = find_room_light(evidence_.start, evidence_.readings, fit_options(), *evidence_.fit);
+  if (!room) return std::nullopt;
+  const bool in_dark = room->share < 0;
+  return told(
+      in_dark ? "the dark shots of the sheet have light that the others lack"
+              : "there is light of the room that the dark shots of the sheet lack",
+      fmt::format("it is about {:.0f} percent of the LEDs' mean light, alike under every LED; without it {}",
+                  100 * std::abs(room->share),
+                  room->agrees ? "the photographs agree" : "they contradict each other less"),
+      in_dark ? "put out the lamp that was on for them, and photograph the sheets again"
+              : "take the dark shots without the lens cap and in the same light, or darken the room, and "
+                "photograph the sheets again");
+}
+
+std::string LightsCalibration::words_of_misfit() const {
+  const LightFit& fit = *evidence_.fit;
+  std::vector<std::string> why;
+  if (fit.chi_square > kMisfitFrom) {
+    why.push_back(fmt::format(
+        "chi-square is {:.2f} for each of {:.0f} degrees of freedom, at most {:.1f} is consistent",
+        fit.chi_square, fit.degrees_of_freedom, kMisfitFrom));
+  }
+  if (!fit.settled) why.emplace_back("the fit did not settle");
+  if (fit.flickers_too_much)
+    why.push_back(
+        fmt::format("LEDs differ from shot to shot by more than {:.2g} times --flicker", kMostFlicker));
+  if (fit.other_shot) {
+    why.push_back(fmt::format("LED {} gave {:.3g} times the light in {} that it gave in the others",
+                              fit.other_shot->led + 1, std::exp(fit.other_shot->log_gain),
+                              evidence_.captures[fit.other_shot->sheet]));
+  }
+  return fmt::format("{}; what is off the most: {}", fmt::join(why, "; "), worst_of(evidence_));
+}
+
 // The gate: do the readings agree with the model, and do they say enough?
 Result<void> LightsCalibration::judge() {
   const LightFit& fit = *evidence_.fit;
   if (fit.misfits()) {
-    std::string why = fmt::format(
-        "chi-square is {:.2f} for each of {:.0f} degrees of freedom, at most {:.1f} is consistent{}; the "
-        "most: {}",
-        fit.chi_square, fit.degrees_of_freedom, kMisfitFrom,
-        fit.settled ? "" : ", and the fit did not settle", worst_of(evidence_));
-    if (fit.flickers_too_much) {
-      why += fmt::format("; LEDs differ from shot to shot by more than {:.2g} times --flicker", kMostFlicker);
-    }
-    if (fit.other_shot) {
-      why += fmt::format("; LED {} gave {:.3g} times the light in {} that it gave in the others",
-                         fit.other_shot->led + 1, std::exp(fit.other_shot->log_gain),
-                         evidence_.captures[fit.other_shot->sheet]);
-    }
+    const std::string why = words_of_misfit();
     if (!options_.accept_misfit) {
+      if (const std::optional<Error> story = find_story()) return *story;
       return bad(
           ErrorKind::kBadData, "the photographs of the sheet contradict each other", options_.input.string(),
           why,

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 
+#include "calibration/run/lit_dark.h"
 #include "capture/frames/session_frames.h"
 #include "core/base/files.h"
 #include "core/base/parallel.h"
@@ -105,6 +106,7 @@ class SessionReader {
   Result<void> look();
   Result<Image<std::uint8_t>> read_mosaics(std::vector<SheetBlockGrid>& leds);
   Result<Image<std::uint8_t>> read_developed(std::vector<SheetBlockGrid>& leds);
+  Result<void> check_dark(std::span<const double> dark, std::span<const std::vector<double>> lit) const;
   Result<void> find_pose(const Image<std::uint8_t>& grey, SheetCapture& capture) const;
   void mark_paper(SheetCapture& capture) const;
   std::vector<PixelPoint> outline_of(const Pose& rig_from_sheet) const;
@@ -149,6 +151,7 @@ Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<SheetBlockGr
     if (!frame) return std::move(frame).error();
     dark = std::move(*frame);
   }
+  std::vector<std::vector<double>> light(lit_.size());
   SumPicture sum(size());
   const auto read_frame = [&](std::size_t i) -> Result<void> {
     const Shot& shot = lit_[i];
@@ -169,6 +172,7 @@ Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<SheetBlockGr
       average_row(grid, row, band.plane(), frame->cfa);
     }
     leds[static_cast<std::size_t>(shot.led - 1)] = std::move(grid);
+    if (dark) light[i] = light_by_parts(*frame);
     sum.add(*frame);
     return {};
   };
@@ -176,6 +180,9 @@ Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<SheetBlockGr
   JobContext two = context_;
   two.threads = std::min(resolved_threads(context_.threads), 2);
   if (Result<void> ok = for_each_frame(lit_.size(), two, read_frame); !ok) return std::move(ok).error();
+  if (dark) {
+    if (Result<void> ok = check_dark(light_by_parts(*dark), light); !ok) return std::move(ok).error();
+  }
   sum.add_to(cells_, point_cell_px(size()));
   return sum.grey();
 }
@@ -188,10 +195,14 @@ Result<Image<std::uint8_t>> SessionReader::read_developed(std::vector<SheetBlock
     dark = std::move(*image);
   }
   Image<float> sum(size(), 3);
+  std::vector<std::vector<double>> light;
   for (const Shot& shot : lit_) {
     Result<Image<float>> image = capture::read_developed_shot(session_, shot);
     if (!image) return std::move(image).error();
-    if (!dark.empty()) subtract(*image, dark);
+    if (!dark.empty()) {
+      light.push_back(light_by_parts(std::as_const(*image).plane(1)));
+      subtract(*image, dark);
+    }
     scale(*image, 1 / seconds(shot));
     SheetBlockGrid grid(size(), block_px_);
     for (int row = 0; row < grid.rows; ++row) {
@@ -211,12 +222,30 @@ Result<Image<std::uint8_t>> SessionReader::read_developed(std::vector<SheetBlock
       }
     }
   }
+  if (!dark.empty()) {
+    if (Result<void> ok = check_dark(light_by_parts(std::as_const(dark).plane(1)), light); !ok)
+      return std::move(ok).error();
+  }
   const std::array<View<const float>, 3> planes = {std::as_const(sum).plane(0), std::as_const(sum).plane(1),
                                                    std::as_const(sum).plane(2)};
   const int cell_px = point_cell_px(size());
   for (std::size_t c = 0; c < 3; ++c)
     add_cells(planes[c], {0, 0, size().width, size().height}, cell_px, c == 1 ? 2 : 1, cells_);
   return grey_picture(planes);
+}
+
+// A dark shot that is lit takes a LED's light from all others: none of them is to blame.
+Result<void> SessionReader::check_dark(std::span<const double> dark,
+                                       std::span<const std::vector<double>> lit) const {
+  const std::optional<std::size_t> like = photograph_like(dark, lit);
+  if (!like) return {};
+  return bad_capture(
+      session_.path_of(*session_.dark()),
+      fmt::format("the dark shot of {} is lit", folder_.filename().string()),
+      fmt::format("it looks like LED {}'s photograph", lit_[*like].led),
+      fmt::format("look whether LED {} stays lit, or frames are numbered wrongly, and scan the sheet "
+                  "again",
+                  lit_[*like].led));
 }
 
 Result<void> SessionReader::find_pose(const Image<std::uint8_t>& grey, SheetCapture& capture) const {
