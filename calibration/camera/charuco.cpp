@@ -18,6 +18,8 @@ namespace {
 
 constexpr double kAgrees = 0.15;  // of a square: a marker this far off its place is of another board
 
+constexpr int kClearly = 2;  // markers more that lie where the old pattern has them
+
 struct SeenMarker {
   int id;                             // from the board's first
   std::array<PixelPoint, 4> corners;  // upper left first, clockwise
@@ -156,7 +158,7 @@ BoardSighting find_charuco(View<const std::uint8_t> grey, const Board& board, co
     const auto old_squares = marker_squares(board, true);
     int old_inliers = 0;
     const cv::Mat old_homography = homography_of(board, old_squares, markers, true, &old_inliers);
-    if (old_inliers > inliers)
+    if (old_inliers >= inliers + kClearly)
       is_old = true, squares = old_squares, homography = old_homography, inliers = old_inliers;
   }
   if (homography.empty() || inliers < 0.8 * static_cast<double>(markers.size())) {
