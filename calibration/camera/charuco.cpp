@@ -18,8 +18,6 @@ namespace {
 
 constexpr double kAgrees = 0.15;  // of a square: a marker this far off its place is of another board
 
-constexpr int kClearly = 2;  // markers more that lie where the old pattern has them
-
 struct SeenMarker {
   int id;                             // from the board's first
   std::array<PixelPoint, 4> corners;  // upper left first, clockwise
@@ -125,11 +123,10 @@ Grid charuco_corners(View<const std::uint8_t> grey, const Board& board,
   return grid;
 }
 
-}  // namespace
-
-BoardSighting find_charuco(View<const std::uint8_t> grey, const Board& board, const BoardLimits& limits) {
+BoardSighting find_pattern(View<const std::uint8_t> grey, const Board& board, const BoardLimits& limits,
+                           bool is_old) {
   const auto dictionary = *find_dictionary(board.dictionary);
-  auto squares = marker_squares(board, false);
+  const auto squares = marker_squares(board, is_old);
   const ReducedPicture picture = reduced(grey);
   std::vector<SeenMarker> markers = detect(picture, dictionary, board.first_marker), others;
   if (markers.size() < 4) {
@@ -152,15 +149,7 @@ BoardSighting find_charuco(View<const std::uint8_t> grey, const Board& board, co
   markers.erase(end, markers.end());
 
   int inliers = 0;
-  cv::Mat homography = homography_of(board, squares, markers, true, &inliers);
-  bool is_old = false;
-  if (board.squares_y % 2 == 0) {  // of odd rows both patterns are one
-    const auto old_squares = marker_squares(board, true);
-    int old_inliers = 0;
-    const cv::Mat old_homography = homography_of(board, old_squares, markers, true, &old_inliers);
-    if (old_inliers >= inliers + kClearly)
-      is_old = true, squares = old_squares, homography = old_homography, inliers = old_inliers;
-  }
+  const cv::Mat homography = homography_of(board, squares, markers, true, &inliers);
   if (homography.empty() || inliers < 0.8 * static_cast<double>(markers.size())) {
     return faulty(
         BoardFault::kWrongSquares,
@@ -182,6 +171,21 @@ BoardSighting find_charuco(View<const std::uint8_t> grey, const Board& board, co
   BoardSighting sighting = judged(grey, grid, limits);
   sighting.old_pattern = is_old;
   return sighting;
+}
+
+}  // namespace
+
+// Ids tell the two patterns of an even number of rows apart: by the other one a board is never whole.
+BoardSighting find_charuco(View<const std::uint8_t> grey, const Board& board, const BoardLimits& limits) {
+  BoardSighting sighting = find_pattern(grey, board, limits, false);
+  const bool is_whole = sighting.corners.size() == static_cast<std::size_t>(board.corners());
+  const bool may_be_old = sighting.fault == BoardFault::kNone ||
+                          sighting.fault == BoardFault::kWrongSquares ||
+                          sighting.fault == BoardFault::kPartial;
+  if (is_whole || !may_be_old || board.squares_y % 2 != 0) return sighting;
+  BoardSighting old = find_pattern(grey, board, limits, true);
+  const bool is_more = sighting.fault != BoardFault::kNone || old.corners.size() > sighting.corners.size();
+  return old.fault == BoardFault::kNone && is_more ? old : sighting;
 }
 
 }  // namespace weft::calibration
