@@ -197,7 +197,7 @@ const std::vector<FrameFault>& faults() {
 struct Drawn {
   std::string cloth, said;
   double turned_deg = 0, albedo = 0;  // by the fault
-  double left_deg = 0;                // of it after what was found was mended
+  double left_deg = 0;                // after what was found was mended
   bool is_named = false, is_told = false;
 
   bool matters() const { return turned_deg > kMatters_deg || std::abs(albedo) > kMattersAlbedo; }

@@ -19,6 +19,9 @@ struct Verdict {
 
 void describe(Fields& fields, Verdict& verdict);
 
+/// Whether it says that a frame or the dark shot lies: FRAME_FITS_NOTHING, DARK_SHOT and their like.
+bool is_of_frames(const Verdict& verdict);
+
 /// A list of {"name", "text", "remedy"}.
 Json json_of(const std::vector<Verdict>& verdicts);
 

@@ -28,6 +28,7 @@ void describe_done(Fields& fields, TaskOutcome& o) {
   fields.value({"solved", "Share of the cloth that has a normal; since 1.1"}, o.solved);
   fields.value({"left_out", "Rms of how left-out lights are predicted, a share"}, o.left_out);
   fields.value({"warnings", "By name"}, o.warnings);
+  fields.value({"frames", "What is said of frames that lie", {}, kUnlessEmpty}, o.frames);
   fields.object({"verdict", "What the scan is worth with this solve", {}, kUnlessEmpty}, o.verdict);
   fields.value({"made", "Folders of maps and exports"}, o.made);
   fields.object({"change", "From the solve before", {}, kUnlessEmpty}, o.change);

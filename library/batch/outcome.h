@@ -46,6 +46,7 @@ struct TaskOutcome {
   std::optional<double> solved = {};
   std::optional<double> left_out = {};      ///< rms of how left-out lights are predicted, a share
   std::vector<std::string> warnings = {};   ///< by name
+  std::vector<std::string> frames = {};     ///< what is said of frames that lie, a sentence each
   std::optional<ScanVerdict> verdict = {};  ///< on the scan, with this solve; none in early lines
   std::vector<std::string> made = {};       ///< folders of maps and exports
   std::optional<MapChange> change = {};     ///< from the solve before

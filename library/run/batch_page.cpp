@@ -97,6 +97,20 @@ report::Section warned_section(const BatchState& state) {
   return section;
 }
 
+report::Section frames_section(const BatchState& state) {
+  report::Section section = {.title = "Frames that lie"};
+  section.table = report::Table{.header = {"session", "what was found, what it would cost, what was done"}};
+  for (const BatchRow& row : state.rows) {
+    if (!row.result) continue;
+    for (const std::string& said : row.result->frames) {
+      if (is_full(section)) break;
+      section.table->rows.push_back({name_in(row.result->session), said});
+    }
+  }
+  if (section.table->rows.empty()) return {};
+  return section;
+}
+
 report::Section calibrations_section(const BatchState& state) {
   report::Section section = {.title = "By calibration, the most suspect first"};
   section.table = report::Table{.header = {"calibration", "rig", "sessions", "worse", "lights do not fit",
@@ -207,6 +221,13 @@ std::vector<Verdict> verdicts_of(const BatchState& state) {
                      sessions_in_words(static_cast<int>(named.size())), fmt::join(named, ", ")),
          "look at the warnings of these solves; scan again what is too bright or too dark"});
   }
+  const auto lie = std::ranges::count_if(
+      state.rows, [](const BatchRow& row) { return row.result && !row.result->frames.empty(); });
+  if (lie > 0)
+    verdicts.push_back({"FRAMES_LIE",
+                        fmt::format("{} have frames that lie, each named below with what was done",
+                                    sessions_in_words(static_cast<int>(lie))),
+                        "scan these again where what is left of them is not enough"});
   if (s.worse > 0)
     verdicts.push_back({"WORSE", fmt::format("{} became worse", sessions_in_words(s.worse)),
                         "look at them first; weft batch accept leaves them as they are"});
@@ -214,7 +235,7 @@ std::vector<Verdict> verdicts_of(const BatchState& state) {
 }
 
 std::vector<report::Section> sections_of(const BatchState& state) {
-  return {done_section(state),         causes_section(state),  warned_section(state),
+  return {done_section(state),         causes_section(state),  warned_section(state),  frames_section(state),
           calibrations_section(state), changes_section(state), left_out_section(state)};
 }
 

@@ -47,7 +47,10 @@ std::optional<TaskOutcome> unwritten(const BatchPlan& plan, const PlannedSolve& 
   outcome.no_change = "its process was killed before it compared them: run the same command again";
   if (facts->taken) outcome.solved = facts->taken->solved;
   if (facts->check) outcome.left_out = facts->check->all.rms;
-  for (const Verdict& warning : facts->warnings) outcome.warnings.push_back(warning.name);
+  for (const Verdict& warning : facts->warnings) {
+    outcome.warnings.push_back(warning.name);
+    if (is_of_frames(warning)) outcome.frames.push_back(warning.text);
+  }
   return outcome;
 }
 

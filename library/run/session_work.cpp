@@ -101,7 +101,10 @@ void add_facts_of(const solve::SolveReport& report, TaskOutcome& outcome) {
                      static_cast<double>(std::max<std::int64_t>(1, facts.size.pixels()));
   outcome.solved = facts.taken ? facts.taken->solved : 1 - outcome.unsolved;
   if (facts.check) outcome.left_out = facts.check->all.rms;
-  for (const Verdict& warning : facts.warnings) outcome.warnings.push_back(warning.name);
+  for (const Verdict& warning : facts.warnings) {
+    outcome.warnings.push_back(warning.name);
+    if (is_of_frames(warning)) outcome.frames.push_back(warning.text);
+  }
 }
 
 void compare_with_before(const SessionWork& work, const JobContext& context, TaskOutcome& outcome) {

@@ -26,7 +26,7 @@
 namespace weft::solve {
 namespace {
 
-// Of full scale, as in the scan: light in the dark shot that is spoken of.
+// Light in the dark shot that is spoken of, as in the scan: a share of full scale.
 constexpr double kDarkWarns = 0.004;
 constexpr double kBrighter = 0.9;  // of the dark shot's sites, in the order of their light
 constexpr int kStep = 7;           // sites that are looked at; odd: of every colour
@@ -118,7 +118,7 @@ RawFrame without_light(const RawFrame& dark, const Cell& black) {
 // Photographs looked at with one dark shot or another.
 struct Look {
   solver::CellFit fit;
-  solver::RoomLight room;
+  solver::RoomShare room;
 };
 
 Look look_at(const Photographs& photographs, int threads) {
@@ -144,7 +144,7 @@ class DarkShot {
     const DarkLight light = mosaics_.dark ? light_of(mosaics_, black_) : DarkLight();
     const Look before = look_at(photographs_, threads_);
     if (is_lit(light) && set_aside(before, light)) return;
-    if (before.room.is_told()) take_off(before);
+    if (before.room.is_told() && (before.room.share > 0 || explains(light, before.room))) take_off(before);
   }
 
  private:
@@ -152,6 +152,12 @@ class DarkShot {
     constexpr double kLeastShare = 0.003, kLeast_sigmas = 8;
     return std::abs(light.bright) > kDarkWarns ||
            (light.share > kLeastShare && light.share > kLeast_sigmas * light.sigma);
+  }
+
+  // A dark shot can have too much light only where it is seen to have some.
+  static bool explains(const DarkLight& light, const solver::RoomShare& room) {
+    constexpr double kMostOf = 0.5;
+    return is_lit(light) && light.share > kMostOf * std::abs(room.share);
   }
 
   // Whether the frames fit better without the light of the dark shot: that they lack it.
@@ -216,7 +222,7 @@ class DarkShot {
   void lend(Mosaics& others) const {
     if (!others.frames.empty()) others.lend_dark(mosaics_);
   }
-  void note(const solver::RoomLight& room, const solver::CellChange& change) {
+  void note(const solver::RoomShare& room, const solver::CellChange& change) {
     photographs_.conditions.facts.room = {room.share, room.sigma, change.turned_deg, change.albedo};
   }
 

@@ -18,7 +18,7 @@
 #include "solve/photographs/cell_noise.h"
 #include "solve/photographs/spread_cells.h"
 #include "solver/frame_fit/cell_fit.h"
-#include "solver/frame_fit/frame_parts.h"
+#include "solver/frame_fit/frame_misfit.h"
 #include "solver/frame_fit/row_waves.h"
 
 namespace weft::solve {
@@ -211,7 +211,7 @@ class FrameQuestions {
     return "";
   }
 
-  // Of two shots that are one file one is wrong.
+  // One of two shots that are one file is wrong.
   void accuse_copies() {
     const std::vector<Shot>& lit = exposures_.plan.lit;
     std::vector<std::string> digests(photographs_.count());

@@ -185,7 +185,7 @@ class Levels {
 }  // namespace
 
 Result<SettledLevels> settle_levels(std::span<RawFrame> frames, std::size_t lit, bool has_dark,
-                                               const std::optional<Response>& response, int threads) {
+                                    const std::optional<Response>& response, int threads) {
   return Levels(frames, lit, has_dark, response, threads).settle();
 }
 

@@ -34,7 +34,7 @@ struct SettledLevels {
 /// Errors (kBadData, whose `where` the caller says): levels that are not the calibration's, and nothing that
 /// tells how their counts compare; counts far above white.
 Result<SettledLevels> settle_levels(std::span<RawFrame> frames, std::size_t lit, bool has_dark,
-                                               const std::optional<Response>& response, int threads);
+                                    const std::optional<Response>& response, int threads);
 
 /// What a response says of counts that are so many times those it was measured on.
 Response scaled(Response response, double scale);

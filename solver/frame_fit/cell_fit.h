@@ -15,7 +15,7 @@ namespace weft::solver {
 struct FrameCells {
   int columns = 0, rows = 0;
   std::size_t count = 0;  ///< K
-  /// Of cell (x, y) in photograph k at (y * columns + x) * K + k.
+  /// Those of cell (x, y) in photograph k are at (y * columns + x) * K + k.
   std::vector<float> value;     ///< reading over strength; NaN: none
   std::vector<float> strength;  ///< reading of a white surface that faces the light
   std::vector<Vec3> direction;  ///< to the light, of unit length

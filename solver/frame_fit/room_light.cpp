@@ -112,13 +112,13 @@ double unlit_share(const FrameCells& cells, const CellFit& fit) {
 
 }  // namespace
 
-bool RoomLight::is_told() const {
+bool RoomShare::is_told() const {
   return std::abs(share) > doubt && std::abs(share) > kToldFrom_sigmas * sigma;
 }
 
-RoomLight find_room_light(const FrameCells& cells, const CellFit& fit, std::span<const FrameMisfit> misfits,
+RoomShare find_room_light(const FrameCells& cells, const CellFit& fit, std::span<const FrameMisfit> misfits,
                           double noise) {
-  const RoomLight none = {0, 0, 1, 1};
+  const RoomShare none = {0, 0, 1, 1};
   if (cells.count < kFewestGains) return none;
   const auto unknowns = static_cast<Eigen::Index>(1 + cells.count);
   std::vector<Equations> parts(kParts * kParts, Equations(unknowns));
@@ -141,7 +141,7 @@ RoomLight find_room_light(const FrameCells& cells, const CellFit& fit, std::span
   const double precision = fit.sigma > 0 ? std::pow(fit.sigma / kGainPrior, 2) : 0;
   for (Eigen::Index k = 1; k < unknowns; ++k) prior(k, k) = precision;
   prior(0, 0) = precision / 100;  // keeps what no cell tells at 0
-  RoomLight found;
+  RoomShare found;
   const VectorXd solution = (all.a + prior).ldlt().solve(all.rhs);
   found.share = all.share(prior);
   found.alone = all.alone(prior);

@@ -4,12 +4,12 @@
 #include <span>
 
 #include "solver/frame_fit/cell_fit.h"
-#include "solver/frame_fit/frame_parts.h"
+#include "solver/frame_fit/frame_misfit.h"
 
 namespace weft::solver {
 
 /// Light that all photographs have and their dark shot lacks, or the other way round.
-struct RoomLight {
+struct RoomShare {
   double share = 0;  ///< of a cell's mean reading; below 0: the dark shot has light that they lack
   double alone = 0;  ///< the same if no light has a gain
   double sigma = 0;  ///< of the share, by how parts of the frame differ
@@ -23,7 +23,7 @@ struct RoomLight {
 /// with a gain of each light beside it and without, whichever is less, albedo and normal eliminated. Not told
 /// by lights that are all as high over a flat cloth. Photographs that do not fit say nothing. `noise` is the
 /// sigma of an error that noise alone gives, of the brightness.
-RoomLight find_room_light(const FrameCells& cells, const CellFit& fit, std::span<const FrameMisfit> misfits,
+RoomShare find_room_light(const FrameCells& cells, const CellFit& fit, std::span<const FrameMisfit> misfits,
                           double noise);
 
 }  // namespace weft::solver

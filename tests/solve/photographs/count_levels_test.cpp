@@ -59,8 +59,8 @@ Settled settle(std::vector<RawFrame> frames, const std::optional<Response>& resp
   EXPECT_TRUE(settled.has_value()) << settled.error().message();
   if (!settled) return {};
   const RawFrame& frame = frames.front();
-  return {static_cast<double>(frame.black[1][0]), static_cast<double>(frame.white), frame.full,
-          settled->said, settled->scale};
+  return {static_cast<double>(frame.black[1][0]), static_cast<double>(frame.white), frame.full, settled->said,
+          settled->scale};
 }
 
 constexpr std::array<float, 3> kAsSaid = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/frame_fit/frame_parts.h"
+#include "solver/frame_fit/frame_misfit.h"
 
 #include <algorithm>
 #include <array>

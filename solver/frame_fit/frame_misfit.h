@@ -14,7 +14,7 @@ struct FrameMisfit {
   double gain = 1;     ///< its light over what the others predict, median over lit cells
   double missed = 0;   ///< with that gain: median of |error|, of the brightness
   double typical = 0;  ///< the same of the other photographs, their median
-  /// Of the frame, where cells do not fit though they do elsewhere: cells, and their share of all.
+  /// Where cells do not fit though they do elsewhere, and the share of the frame that they are.
   std::optional<Rect> part;
   double part_share = 0;
   double part_light = 1;  ///< in that part, of what the others predict

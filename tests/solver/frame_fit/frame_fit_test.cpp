@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "solver/frame_fit/cell_fit.h"
+#include "solver/frame_fit/frame_misfit.h"
+#include "solver/frame_fit/room_light.h"
+#include "solver/frame_fit/row_waves.h"
+
+namespace weft::solver {
+namespace {
+
+constexpr int kColumns = 32, kRows = 120;
+constexpr std::size_t kLights = 10;
+constexpr double kNoise = 0.004;
+
+// Smooth waves of albedo 0.3 to 0.5 and slopes up to 0.3 under two rings of five lights, with noise.
+FrameCells waves_of_cloth() {
+  FrameCells cells;
+  cells.columns = kColumns;
+  cells.rows = kRows;
+  cells.count = kLights;
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, kNoise);
+  for (int y = 0; y < kRows; ++y) {
+    for (int x = 0; x < kColumns; ++x) {
+      const Vec3 normal =
+          normalized({0.3 * std::sin(1.3 * x + 0.4 * y), 0.3 * std::cos(0.9 * y - 0.5 * x), 1});
+      const double albedo = 0.4 + 0.1 * std::sin(0.37 * x * y);
+      for (std::size_t k = 0; k < kLights; ++k) {
+        const double turn = 2 * kPi * static_cast<double>(k % 5) / 5 + (k < 5 ? 0 : 0.6);
+        const double height = radians(k < 5 ? 35 : 60);
+        const Vec3 light = {std::cos(turn) * std::cos(height), std::sin(turn) * std::cos(height),
+                            std::sin(height)};
+        cells.direction.push_back(light);
+        cells.strength.push_back(k < 5 ? 1.0F : 1.4F);
+        cells.value.push_back(
+            static_cast<float>(albedo * (std::max(0.0, dot(normal, light)) + noise(random))));
+      }
+    }
+  }
+  return cells;
+}
+
+template <typename Change>
+FrameCells changed(FrameCells cells, std::size_t light, const Change& change) {
+  for (std::size_t cell = 0; cell < cells.cells(); ++cell) {
+    float& value = cells.value[cell * kLights + light];
+    value = static_cast<float>(change(static_cast<int>(cell) % kColumns, static_cast<int>(cell) / kColumns,
+                                      static_cast<double>(value)));
+  }
+  return cells;
+}
+
+// Light of `share` of each cell's mean reading more in every photograph.
+FrameCells in_a_lit_room(FrameCells cells, double share) {
+  for (std::size_t cell = 0; cell < cells.cells(); ++cell) {
+    double mean = 0;
+    for (std::size_t k = 0; k < kLights; ++k)
+      mean +=
+          static_cast<double>(cells.value[cell * kLights + k] * cells.strength[cell * kLights + k]) / kLights;
+    for (std::size_t k = 0; k < kLights; ++k)
+      cells.value[cell * kLights + k] +=
+          static_cast<float>(share * mean) / cells.strength[cell * kLights + k];
+  }
+  return cells;
+}
+
+RoomShare room_of(const FrameCells& cells) {
+  const CellFit fit = fit_cells(cells, 1);
+  return find_room_light(cells, fit, frame_misfits(cells, fit, 1), kNoise);
+}
+
+TEST(FrameFit, SaysNothingOfPhotographsThatFit) {
+  const FrameCells cells = waves_of_cloth();
+  const CellFit fit = fit_cells(cells, 1);
+  for (const FrameMisfit& misfit : frame_misfits(cells, fit, 1)) {
+    EXPECT_FALSE(misfit.is_wrong()) << misfit.missed;
+    EXPECT_NEAR(misfit.gain, 1, 0.005);
+  }
+  EXPECT_FALSE(find_row_waves(cells, fit, {}, 1));
+  EXPECT_FALSE(room_of(cells).is_told()) << room_of(cells).share;
+}
+
+TEST(FrameFit, TellsLightOfTheRoomByItsShareOfTheMeanReading) {
+  for (const double share : {0.02, 0.1, 0.3}) {
+    const RoomShare room = room_of(in_a_lit_room(waves_of_cloth(), share));
+    EXPECT_TRUE(room.is_told()) << room.share << " of " << share << ", sigma " << room.sigma;
+    EXPECT_NEAR(room.share, share / (1 + share), 0.1 * share);
+  }
+}
+
+TEST(FrameFit, TellsTheLightOfADarkShotThatTheFramesLack) {
+  const RoomShare room = room_of(in_a_lit_room(waves_of_cloth(), -0.05));
+  EXPECT_TRUE(room.is_told());
+  EXPECT_NEAR(room.share, -0.05 / 0.95, 0.005);
+}
+
+TEST(FrameFit, NoGainOfALampIsLightOfTheRoom) {
+  FrameCells cells = waves_of_cloth();
+  for (std::size_t k = 0; k < kLights; k += 3)
+    cells = changed(std::move(cells), k, [](int, int, double value) { return 1.02 * value; });
+  EXPECT_FALSE(room_of(cells).is_told()) << room_of(cells).share;
+}
+
+TEST(FrameFit, TakesAGainForNoMisfit) {
+  const FrameCells cells = changed(waves_of_cloth(), 4, [](int, int, double value) { return 0.7 * value; });
+  const std::vector<FrameMisfit> misfits = frame_misfits(cells, fit_cells(cells, 1), 1);
+  EXPECT_NEAR(misfits[4].gain, 0.7, 0.01);
+  EXPECT_FALSE(misfits[4].is_wrong()) << misfits[4].missed;
+}
+
+TEST(FrameFit, NamesAPhotographThatFitsNothingAndWhy) {
+  const FrameCells right = waves_of_cloth();
+  const auto at = [&](int x, int y, std::size_t k) {
+    return static_cast<double>(right.value[static_cast<std::size_t>(y * kColumns + x) * kLights + k]);
+  };
+  const FrameCells copy = changed(right, 3, [&](int x, int y, double) { return at(x, y, 1); });
+  const FrameMisfit copied = frame_misfits(copy, fit_cells(copy, 1), 1)[3];
+  EXPECT_TRUE(copied.fits_nothing) << copied.missed;
+  EXPECT_EQ(copied.same_as, 1U);
+
+  const FrameCells turn =
+      changed(right, 3, [&](int x, int y, double) { return at(kColumns - 1 - x, kRows - 1 - y, 3); });
+  const std::vector<FrameMisfit> turned = frame_misfits(turn, fit_cells(turn, 1), 1);
+  EXPECT_TRUE(turned[3].fits_nothing) << turned[3].missed;
+  EXPECT_TRUE(turned[3].is_turned);
+  for (std::size_t k = 0; k < kLights; ++k) EXPECT_EQ(turned[k].fits_nothing, k == 3) << k;
+}
+
+TEST(FrameFit, NamesThePartThatAHandHides) {
+  const FrameCells cells = changed(waves_of_cloth(), 6, [](int x, int y, double value) {
+    return x < 12 && y >= 80 ? 0.2 * value : value;
+  });
+  const FrameMisfit misfit = frame_misfits(cells, fit_cells(cells, 1), 1)[6];
+  ASSERT_TRUE(misfit.part);
+  EXPECT_FALSE(misfit.fits_nothing);
+  EXPECT_LE(misfit.part->x0, 0);
+  EXPECT_GE(misfit.part->x1, 12);
+  EXPECT_LE(misfit.part->y0, 80);
+  EXPECT_EQ(misfit.part->y1, kRows);
+  EXPECT_NEAR(misfit.part_share, 0.125, 0.03);
+}
+
+TEST(FrameFit, EvensOutLightThatFlickersAlongRows) {
+  constexpr double kPeriod = 21.3, kAmplitude = 0.06;
+  FrameCells cells = waves_of_cloth();
+  const CellFit truth = fit_cells(cells, 1);
+  for (std::size_t k = 0; k < kLights; ++k) {
+    cells = changed(std::move(cells), k, [&](int, int y, double value) {
+      return value * (1 + kAmplitude * std::sin(2 * kPi * y / kPeriod + 2.4 * static_cast<double>(k * k)));
+    });
+  }
+  const CellFit fit = fit_cells(cells, 1);
+  const std::optional<RowWaves> waves = find_row_waves(cells, fit, {}, 1);
+  ASSERT_TRUE(waves);
+  EXPECT_TRUE(waves->are_even);
+  EXPECT_NEAR(waves->period_rows, kPeriod, 0.2);
+  FrameCells even = cells;
+  for (std::size_t k = 0; k < kLights; ++k) {
+    EXPECT_NEAR(waves->amplitude[k], kAmplitude, 0.25 * kAmplitude) << k;
+    even = changed(std::move(even), k, [&](int, int y, double value) {
+      return value / static_cast<double>(waves->gain[k][static_cast<std::size_t>(y)]);
+    });
+  }
+  const double before = change_of(truth, fit).turned_deg,
+               after = change_of(truth, fit_cells(even, 1)).turned_deg;
+  EXPECT_LT(after, 0.3 * before) << before << " degrees before, " << after << " after";
+}
+
+}  // namespace
+}  // namespace weft::solver
