@@ -209,6 +209,7 @@ class Loaded {
   static Result<Loaded> make(const SimulatedCloth& cloth, FramesOfRig frames) {
     Loaded loaded;
     loaded.plan_.calibration = cloth.calibration();
+    loaded.plan_.asks_frames = true;
     loaded.plan_.size = frames.lit.front().counts.size();
     const double exposure_us = cloth.scene_exposure_us();
     for (std::size_t k = 0; k < frames.lit.size(); ++k) {

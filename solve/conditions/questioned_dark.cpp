@@ -236,7 +236,7 @@ class DarkShot {
 }  // namespace
 
 Result<void> question_dark(const Exposures& exposures) {
-  if (exposures.photographs.mosaics() == nullptr) return {};
+  if (!exposures.plan.asks_frames || exposures.photographs.mosaics() == nullptr) return {};
   DarkShot(exposures).question();
   return {};
 }

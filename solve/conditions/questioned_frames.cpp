@@ -313,7 +313,7 @@ Result<void> hide_unread_rows(const Exposures& exposures) {
 }
 
 Result<void> question_frames(const Exposures& exposures) {
-  if (exposures.photographs.mosaics() == nullptr) return {};
+  if (!exposures.plan.asks_frames || exposures.photographs.mosaics() == nullptr) return {};
   return FrameQuestions(exposures).ask();
 }
 

@@ -44,6 +44,8 @@ struct SolvePlan {
   solver::Extent extent = solver::Extent::kTiles;  ///< of the level that will be solved by
   std::shared_ptr<const SolvePlan> second_pose;    ///< in which the lobe is sought too; null: none
 
+  bool asks_frames = false;  ///< whether frames and dark shot are asked if they lie: those of a cloth are
+
   std::string session_name;      ///< of a session's folder, as commands take it
   std::filesystem::path solves;  ///< the folder that solves go to
   std::filesystem::path truth;   ///< normal.exr of a simulated session; else empty

@@ -324,7 +324,9 @@ Result<Ladder> explain_plan(const Result<SolvePlan>& plan, const SolveOptions& o
                             const PriceOptions& wanted, const JobContext& context) {
   if (!plan) return plan.error();
   Stopwatch watch;
-  Result<Photographs> photographs = load_photographs(*plan, context);
+  SolvePlan asked = *plan;
+  asked.asks_frames = true;
+  Result<Photographs> photographs = load_photographs(asked, context);
   if (!photographs) return std::move(photographs).error();
   return explain(std::move(*photographs), plan->is_of_rig, watch.lap(), options, wanted, context);
 }

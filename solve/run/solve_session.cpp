@@ -485,6 +485,7 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
   Result<SolvePlan> plan = plan_session(session);
   if (!plan) return std::move(plan).error();
   plan->extent = method->extent;
+  plan->asks_frames = true;
   if (!options.second_pose.empty()) {
     Result<void> second = plan_second_pose(options.second_pose, *method, input, *plan);
     if (!second) return std::move(second).error();
@@ -502,8 +503,9 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   if (!method) return method.error();
   PhotoOptions photos = input;
   photos.clipped = method->keeps_clipped ? Clipped::kKeep : Clipped::kMark;
-  const Result<SolvePlan> plan = plan_photos(photos);
+  Result<SolvePlan> plan = plan_photos(photos);
   if (!plan) return plan.error();
+  plan->asks_frames = true;
   Result<SolveReport> report = solve(*method, *plan, options, context);
   if (!report) return report;
   std::optional<double> mm_per_pixel = photos.reading.mm_per_pixel;

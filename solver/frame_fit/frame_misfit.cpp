@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/frame_fit/frame_misfit.h"
 
+#include <Eigen/Dense>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -157,6 +159,26 @@ double difference(const FrameCells& cells, const CellFit& fit, std::size_t k, co
   return all.empty() ? kNone : median(std::move(left)) / median(std::move(all));
 }
 
+// What a photograph is missed by if its light may come from anywhere and be of any strength.
+double missed_by_any_light(const FrameCells& cells, const CellFit& fit, std::size_t k) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  const auto each = [&](const auto& what) {
+    for (std::size_t cell = 0; cell < cells.cells(); ++cell) {
+      const float value = cells.value[cell * cells.count + k];
+      if (!(value > kLitFrom * fit.brightness[cell]) || !(length(fit.normal[cell]) > 0)) continue;
+      const double scale = 1 / static_cast<double>(fit.brightness[cell]);
+      const Vec3 b = scale * fit.normal[cell];
+      what(Eigen::Vector3d(b.x, b.y, b.z), scale * static_cast<double>(value));
+    }
+  };
+  each([&](const Eigen::Vector3d& b, double value) { normal += b * b.transpose(), right += value * b; });
+  const Eigen::Vector3d light = normal.ldlt().solve(right);
+  std::vector<double> left;
+  each([&](const Eigen::Vector3d& b, double value) { left.push_back(std::abs(value - b.dot(light))); });
+  return median(std::move(left));
+}
+
 // Why a photograph fits nothing, as far as it tells.
 void find_cause(const FrameCells& cells, const CellFit& fit, std::size_t k, FrameMisfit& misfit) {
   constexpr double kSame = 2.5;  // times what the others are missed by
@@ -217,7 +239,11 @@ std::vector<FrameMisfit> frame_misfits(const FrameCells& cells, const CellFit& f
       misfit.part_light = light_in(cells, fit, k, part);
     }
     misfit.fits_nothing = !misfit.part && misfit.missed > fits_to;
-    if (misfit.fits_nothing) find_cause(cells, fit, k, misfit);
+    if (!misfit.fits_nothing) return;
+    find_cause(cells, fit, k, misfit);
+    constexpr double kExplained = 0.3;  // of what is missed
+    const bool is_told = misfit.same_as || misfit.lit_by || misfit.is_turned;
+    misfit.fits_nothing = is_told || !(missed_by_any_light(cells, fit, k) < kExplained * misfit.missed);
   });
   return all;
 }

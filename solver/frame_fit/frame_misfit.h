@@ -18,6 +18,8 @@ struct FrameMisfit {
   std::optional<Rect> part;
   double part_share = 0;
   double part_light = 1;  ///< in that part, of what the others predict
+  /// Not said where it fits a light that comes from elsewhere: then the lights are not what they are said to
+  /// be, and the frame is right.
   bool fits_nothing = false;
   /// The photograph that shows what this one does, if there is one.
   std::optional<std::size_t> same_as;

@@ -21,9 +21,10 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kMostCells = 6'000;
 constexpr std::size_t kFewestGains = 6;
-constexpr int kParts = 4;            // of the frame, a side
-constexpr double kGainPrior = 0.03;  // of the logarithm of a gain
-constexpr double kNoRoomFrom = 6;    // sigma, beyond which an error is no light of the room
+constexpr int kParts = 4;                               // of the frame, a side
+constexpr double kGainPrior = 0.03, kSharePrior = 0.3;  // sigma beforehand
+constexpr double kLeastRelief_deg = 2;                  // rms: on flatter things gains of lights look like it
+constexpr double kNoRoomFrom = 6;  // sigma, beyond which an error is no light of the room
 constexpr double kToldFrom_sigmas = 5;
 // What a clean cloth shows at most, measured (docs/measured/conditions.md): always, of readings in shadow,
 // and of what no noise explains.
@@ -99,6 +100,22 @@ double misfit_with(const VectorXd& solution, const std::vector<CellPart>& told) 
   return median(std::move(left)) / kMedianOfNormal;
 }
 
+// How far normals lie about their mean, rms degrees.
+double relief_of(const CellFit& fit) {
+  Vec3 mean;
+  for (const Vec3& normal : fit.normal) {
+    if (length(normal) > 0) mean = mean + normalized(normal);
+  }
+  if (!(length(mean) > 0)) return 0;
+  double squares = 0, count = 0;
+  for (const Vec3& normal : fit.normal) {
+    if (!(length(normal) > 0)) continue;
+    squares += std::pow(angle_deg(normal, mean), 2);
+    ++count;
+  }
+  return std::sqrt(squares / count);
+}
+
 double unlit_share(const FrameCells& cells, const CellFit& fit) {
   std::int64_t all = 0, unlit = 0;
   for (std::size_t i = 0; i < cells.value.size(); ++i) {
@@ -119,7 +136,7 @@ bool RoomShare::is_told() const {
 RoomShare find_room_light(const FrameCells& cells, const CellFit& fit, std::span<const FrameMisfit> misfits,
                           double noise) {
   const RoomShare none = {0, 0, 1, 1};
-  if (cells.count < kFewestGains) return none;
+  if (cells.count < kFewestGains || relief_of(fit) < kLeastRelief_deg) return none;
   const auto unknowns = static_cast<Eigen::Index>(1 + cells.count);
   std::vector<Equations> parts(kParts * kParts, Equations(unknowns));
   const std::size_t step = std::max<std::size_t>(1, cells.cells() / kMostCells) | 1U;
@@ -138,9 +155,9 @@ RoomShare find_room_light(const FrameCells& cells, const CellFit& fit, std::span
   Equations all(unknowns);
   for (const Equations& part : parts) all.a += part.a, all.rhs += part.rhs;
   MatrixXd prior = MatrixXd::Zero(unknowns, unknowns);
-  const double precision = fit.sigma > 0 ? std::pow(fit.sigma / kGainPrior, 2) : 0;
-  for (Eigen::Index k = 1; k < unknowns; ++k) prior(k, k) = precision;
-  prior(0, 0) = precision / 100;  // keeps what no cell tells at 0
+  const auto precision = [&](double sigma) { return std::pow(fit.sigma / sigma, 2); };
+  for (Eigen::Index k = 1; k < unknowns; ++k) prior(k, k) = precision(kGainPrior);
+  prior(0, 0) = precision(kSharePrior);
   RoomShare found;
   const VectorXd solution = (all.a + prior).ldlt().solve(all.rhs);
   found.share = all.share(prior);

@@ -21,8 +21,8 @@ struct RoomShare {
 
 /// The share whose light, taken off, lets the readings of each cell fit best: least squares over lit readings
 /// with a gain of each light beside it and without, whichever is less, albedo and normal eliminated. Not told
-/// by lights that are all as high over a flat cloth. Photographs that do not fit say nothing. `noise` is the
-/// sigma of an error that noise alone gives, of the brightness.
+/// of flat things, nor by lights that are all as high over them. Photographs that do not fit say nothing.
+/// `noise` is the sigma of an error that noise alone gives, of the brightness.
 RoomShare find_room_light(const FrameCells& cells, const CellFit& fit, std::span<const FrameMisfit> misfits,
                           double noise);
 

@@ -283,9 +283,10 @@ TEST(Conditions, ArePutRightAndToldInThePhotographs) {
   EXPECT_THAT(
       warnings,
       ElementsAre("LED 3 saturated 100 percent of the frame; it was left out",
-                  "LED 9 did not light the cloth: its frame looks like the dark shot; it was left out"));
-  ASSERT_EQ(of_frames.size(), 1U);
-  EXPECT_THAT(of_frames[0].text, testing::HasSubstr("A part of the frame of LED 8 does not fit the others"));
+                  "LED 9 did not light the cloth: its frame looks like the dark shot; it was left out",
+                  testing::HasSubstr("white patch 3 gives 0.4 times the light that most patches give under "
+                                     "LED 8")));
+  EXPECT_TRUE(of_frames.empty());
   EXPECT_TRUE(doubts.empty());
   EXPECT_TRUE(assumed.empty());
 }
