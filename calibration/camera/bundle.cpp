@@ -98,8 +98,8 @@ double stretch_sigma(const std::vector<const BoardView*>& views, const std::vect
 }
 
 std::optional<double> squares_with_pose_fitted(const BoardView& view, const CameraModel& camera,
-                                               const Pose& start, double board_z_mm) {
-  Bundle bundle = {camera, {start}, {board_z_mm}};
+                                               const Pose& start, double board_z_mm, double log_stretch) {
+  Bundle bundle = {camera, {start}, {board_z_mm}, log_stretch};
   for (int iteration = 0; iteration < 20; ++iteration) {
     const NormalEquations equations = normal_equations({&view}, {}, bundle);
     const Vector6 step = -equations.board[0].ldlt().solve(equations.board_gradient[0]);

@@ -40,7 +40,7 @@ double stretch_sigma(const std::vector<const BoardView*>& views, const std::vect
 
 /// Sum of squares of one board, its pose alone fitted from a start nearby.
 std::optional<double> squares_with_pose_fitted(const BoardView& view, const CameraModel& camera,
-                                               const Pose& start, double board_z_mm);
+                                               const Pose& start, double board_z_mm, double log_stretch = 0);
 
 Pose pose_by_opencv(const BoardView& view, const CameraModel& camera);
 

@@ -24,8 +24,7 @@ using Terms = std::vector<std::string>;
 
 constexpr std::size_t kFolds = 5;
 constexpr double kStandardErrors = 2;
-// Corners of small photographs are off by so much that real boards seem stretched by a thousandth.
-constexpr double kStretchSigmas = 4, kLeastStretch = 2e-3;
+constexpr double kStretchSigmas = 4, kLeastStretch = 5e-4;
 constexpr double kGoodMisfit_px = 0.2;  ///< a board on the table that misses by less is flat
 
 Terms with(Terms terms, const Terms& more) {
@@ -83,23 +82,31 @@ std::optional<Bundle> start_of(const std::vector<const BoardView*>& views, Size 
   return bundle;
 }
 
+// The boards of all folds but one, and where they are.
+std::vector<const BoardView*> without_fold(const std::vector<const BoardView*>& views, const Bundle& bundle,
+                                           std::size_t fold, Bundle& left) {
+  std::vector<const BoardView*> others;
+  left.camera = bundle.camera;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (i % kFolds == fold) continue;
+    others.push_back(views[i]);
+    left.camera_from_board.push_back(bundle.camera_from_board[i]);
+    left.board_z_mm.push_back(bundle.board_z_mm[i]);
+  }
+  return others;
+}
+
 // Squared error of each board by cameras that were fitted to the others.
 std::optional<std::vector<double>> held_out(const std::vector<const BoardView*>& views, const Bundle& start,
                                             const Terms& terms) {
   std::vector<double> squares(views.size());
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    std::vector<const BoardView*> others;
-    Bundle fitted = {start.camera, {}, {}};
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      if (i % kFolds == fold) continue;
-      others.push_back(views[i]);
-      fitted.camera_from_board.push_back(start.camera_from_board[i]);
-      fitted.board_z_mm.push_back(start.board_z_mm[i]);
-    }
+    Bundle fitted;
+    const std::vector<const BoardView*> others = without_fold(views, start, fold, fitted);
     if (!fit(others, terms, fitted)) return std::nullopt;
     for (std::size_t i = fold; i < views.size(); i += kFolds) {
-      const auto sum =
-          squares_with_pose_fitted(*views[i], fitted.camera, start.camera_from_board[i], start.board_z_mm[i]);
+      const auto sum = squares_with_pose_fitted(*views[i], fitted.camera, start.camera_from_board[i],
+                                                start.board_z_mm[i], fitted.log_stretch);
       if (!sum) return std::nullopt;
       squares[i] = *sum;
     }
@@ -171,17 +178,24 @@ double sigma_of(const std::vector<const BoardView*>& views, const Bundle& bundle
   return std::sqrt(squares / freedom);
 }
 
+// Whether held-out boards are better predicted with a term of the print than without.
+bool predicts_better(const std::vector<const BoardView*>& views, const Bundle& start, const Terms& lens) {
+  const auto before = held_out(views, start, lens), after = held_out(views, start, with(lens, {kLogStretch}));
+  return before && after && better_by(*before, *after) > kStandardErrors;
+}
+
 // The print's stretch as these boards show it; `bundle`, of k1 and k2, is with it where it is used. What a
 // lens that is not centred does to boards is no stretch.
 PrintStretch stretch_of(const std::vector<const BoardView*>& views, Bundle& bundle) {
-  const Terms terms = {"k1", "k2", "p1", "p2", kLogStretch};
+  const Terms lens = {"k1", "k2", "p1", "p2"}, terms = with(lens, {kLogStretch});
   Bundle stretched = bundle;
   PrintStretch print = {0, std::numeric_limits<double>::infinity(), false};
   if (!fit(views, terms, stretched)) return print;
   const double sigma = stretch_sigma(views, terms, stretched, sigma_of(views, stretched));
   if (!std::isfinite(sigma)) return print;
   print = {std::expm1(stretched.log_stretch), sigma, false};
-  print.is_used = std::abs(print.share) > std::max(kStretchSigmas * sigma, kLeastStretch);
+  print.is_used = std::abs(print.share) > std::max(kStretchSigmas * sigma, kLeastStretch) &&
+                  predicts_better(views, bundle, lens);
   if (!print.is_used) return print;
   stretched = bundle;
   print.is_used = fit(views, {"k1", "k2", kLogStretch}, stretched);

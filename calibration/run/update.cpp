@@ -7,6 +7,7 @@
 #include <charconv>
 #include <numeric>
 
+#include "calibration/lights/sheet.h"
 #include "calibration/run/check.h"
 #include "calibration/run/described.h"
 #include "calibration/run/movement_words.h"
