@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calibration/camera/markers.h"
+#include "calibration/run/calibrated_levels.h"
 #include "calibration/run/sheet_files.h"
 #include "capture/frames/raw_picture.h"
 #include "capture/raw/decode_raw.h"
@@ -146,6 +147,9 @@ Result<ChartPicture> read_chart_picture(const fs::path& file, const Calibration*
   } else {
     const Result<RawFrame> frame = capture::decode_raw(file);
     if (!frame) return frame.error();
+    if (from != nullptr && from->response) {
+      if (Result<void> ok = check_levels(*frame, *from->response, file); !ok) return std::move(ok).error();
+    }
     picture.camera = frame->shot;
     picture.rgb =
         capture::half_size_picture(*frame, from != nullptr && from->response ? *from->response : Response());

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 
+#include "calibration/run/calibrated_levels.h"
 #include "calibration/run/lit_dark.h"
 #include "capture/frames/session_frames.h"
 #include "core/base/files.h"
@@ -157,6 +158,8 @@ Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<SheetBlockGr
     const Shot& shot = lit_[i];
     Result<RawFrame> frame = capture::read_raw_shot(session_, shot, size());
     if (!frame) return std::move(frame).error();
+    if (Result<void> ok = check_levels(*frame, *options_.calibration.response, session_.path_of(shot)); !ok)
+      return ok;
     const Radiometry radiometry(*frame, dark ? &*dark : nullptr, *options_.calibration.response,
                                 {shot.exposure_us, shot.iso});
     const auto read = [&](Rect rows, View<float> out) { radiometry.read(frame->counts.plane(), rows, out); };

@@ -15,11 +15,13 @@
 #include "calibration/run/check.h"
 #include "calibration/run/sheet_captures.h"
 #include "calibration/run/sheet_files.h"
+#include "capture/raw/decode_raw.h"
 #include "capture/rig.h"
 #include "core/base/files.h"
 #include "core/image_io/image_io.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
+#include "simulator/camera/dng_writer.h"
 #include "simulator/simulate.h"
 #include "tests/system/program.h"
 
@@ -416,6 +418,21 @@ TEST_F(CalibrateLights, NamesAFileOfAnotherApertureOrSize) {
   EXPECT_THAT(refusal(), HasSubstr("500 x 320"));
   replace(4, [&](simulator::Scene& scene) { scene.camera.body = simulator::Body::kD5100; });
   EXPECT_THAT(refusal(), HasSubstr("sheet4.weft"));
+}
+
+TEST_F(CalibrateLights, NamesAFileWhoseCountsMeanAnotherLight) {
+  Session session = *read_session(options_.input / "sheet2.weft");
+  Shot& shot = session.shots.front();
+  Result<RawFrame> frame = capture::decode_raw(session.path_of(shot));
+  ASSERT_TRUE(frame) << frame.error().message();
+  frame->white *= 4;
+  ASSERT_TRUE(simulator::write_dng(session.path_of(shot), *frame));
+  shot.sha256 = *sha256_of_file(session.path_of(shot));
+  ASSERT_TRUE(write_session(session));
+  const std::string message = refusal();
+  EXPECT_THAT(message, HasSubstr(shot.file));
+  EXPECT_THAT(message, HasSubstr("levels are not those of the calibration"));
+  EXPECT_THAT(message, HasSubstr(fmt::format("{:.0f} white", frame->white)));
 }
 
 TEST_F(CalibrateLights, NamesASheetWithoutItsTags) {
