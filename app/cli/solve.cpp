@@ -146,6 +146,7 @@ Json json_of(const solve::SolveReport& report) {
           {"albedo_scale", name_of(facts.albedo_scale)},
           {"seconds",
            {{"read", report.seconds.read},
+            {"conditions", report.seconds.conditions},
             {"solve", report.seconds.solve},
             {"write", report.seconds.write},
             {"pictures", report.seconds.pictures},

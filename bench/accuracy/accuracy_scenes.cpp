@@ -113,10 +113,6 @@ Image<T> copy_of(const Image<T>& image) {
   return copy;
 }
 
-RawFrame copy_of(const RawFrame& frame) {
-  return {copy_of(frame.counts), frame.cfa, frame.black, frame.white, frame.shot};
-}
-
 // Counts of all LEDs through parallel films.
 Result<void> run_parallel(const SimulationPlan& plan, Rect area, int threads, solve::Mosaics& mosaics) {
   SceneRig rig = plan.rig;

@@ -27,18 +27,9 @@ using capture::ScanEvidence;
 using test::Lighting;
 using test::SimulatedCloth;
 
-constexpr int kSide = 480;      // photosites: scenes that are larger are seen from further away
+constexpr int kSide = 480;      // photosites
 constexpr int kRepeat = -1;     // in the place of a LED: its shot is LED 1 once more
 constexpr int kDarkAgain = -2;  // the dark shot at the end
-
-simulator::Scene smaller(simulator::Scene scene) {
-  const int less = std::max(1, scene.camera.width / kSide);
-  scene.camera.width = scene.camera.width / less / 2 * 2;
-  scene.camera.height = scene.camera.height / less / 2 * 2;
-  scene.camera.mm_per_pixel *= less;
-  scene.transport.bounce_rays = 8;
-  return scene;
-}
 
 /// What lights the shot of a LED (0: dark).
 using Story = std::function<Lighting(int led)>;
@@ -278,7 +269,7 @@ Result<Rows> capture_evidence_table(const StudyOptions& options) {
   for (const std::string& name : scenes) {
     Result<simulator::Scene> scene = simulator::read_scene(options.scenes / (name + ".toml"));
     if (!scene) return std::move(scene).error();
-    const SimulatedCloth cloth(smaller(std::move(*scene)));
+    const SimulatedCloth cloth(test::seen_from_afar(std::move(*scene), kSide));
     Result<PatchLights> model = PatchLights::make(cloth.calibration(), 0);
     if (!model) return std::move(model).error();
     rows.push_back(row_of(name, Stage(cloth, std::move(*model))));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/oracles/simulated_cloth.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 #include <utility>
@@ -17,6 +18,16 @@ T unwrapped(Result<T> result) {
 }
 
 }  // namespace
+
+simulator::Scene seen_from_afar(simulator::Scene scene, int width) {
+  constexpr int kFewRays = 8;
+  const int less = std::max(1, scene.camera.width / width);
+  scene.camera.width = scene.camera.width / less / 2 * 2;
+  scene.camera.height = scene.camera.height / less / 2 * 2;
+  scene.camera.mm_per_pixel *= less;
+  scene.transport.bounce_rays = kFewRays;
+  return scene;
+}
 
 SimulatedCloth::SimulatedCloth(simulator::Scene scene)
     : scene_(std::move(scene)),

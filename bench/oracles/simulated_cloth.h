@@ -17,6 +17,9 @@ struct Lighting {
   double room = 0;             ///< 1: as bright as LED 1 on average
 };
 
+/// A scene that is over twice as wide seen from further away, and with few rays for its bounces.
+simulator::Scene seen_from_afar(simulator::Scene scene, int width);
+
 /// A cloth under the LEDs of a scene, rendered once without noise; every photograph is a sum of that with the
 /// noise of its own take.
 class SimulatedCloth {

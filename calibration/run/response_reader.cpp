@@ -208,19 +208,6 @@ class Reader {
   }
 
  private:
-  static RawFrame copy_of(const RawFrame& frame) {
-    RawFrame copy = {Image<std::uint16_t>(frame.counts.size()),
-                     frame.cfa,
-                     frame.black,
-                     frame.white,
-                     frame.shot,
-                     frame.full};
-    for (int y = 0; y < frame.counts.height(); ++y) {
-      std::copy_n(frame.counts.plane().row(y), frame.counts.width(), copy.counts.plane().row(y));
-    }
-    return copy;
-  }
-
   // Every second frame makes a pair with the one before.
   void pair_up(std::optional<RawFrame>& before, RawFrame frame, View<const std::uint8_t> bad) {
     if (!before) {

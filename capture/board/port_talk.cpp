@@ -97,7 +97,7 @@ bool is_klipper(std::string_view bytes) {
 }
 
 bool is_ublox(std::string_view bytes) {
-  return bytes.find("\xB5\x62") != std::string_view::npos && bytes.starts_with("\xB5\x62");
+  return bytes.starts_with("\xB5\x62");
 }
 
 std::string escaped(std::string_view bytes) {

@@ -11,10 +11,9 @@ namespace weft::capture {
 /// Histograms of red, green and blue.
 std::array<RawHistogram, 3> histogram_rgb(const RawFrame& frame);
 
-/// How bright a frame is for the meter: shares of the way from black to where the camera
-/// stops, the largest of the three
-/// channels. A photosite counts for no more than the brightest of its four neighbours of the same filter
-/// says, so that hot ones do not count.
+/// How bright a frame is for the meter: shares of the way from black to where the camera stops, the largest
+/// of the three channels. A photosite counts for no more than the brightest of its four neighbours of the
+/// same filter says, so that hot ones do not count.
 struct Brightness {
   double bright = 0;     ///< 99.9 percent of the photosites are below
   double brightest = 0;  ///< 99.999 percent

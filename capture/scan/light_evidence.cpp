@@ -10,6 +10,7 @@
 
 #include "core/base/percent.h"
 #include "core/base/statistics.h"
+#include "core/rig/dark_counts.h"
 
 namespace weft::capture {
 namespace {
@@ -17,7 +18,6 @@ namespace {
 // Where evidence speaks. Measured over the example scenes: docs/measured/reliability.md.
 constexpr double kLitFrom = 0.005;           // of full scale: the brightest patches of a frame that is lit
 constexpr double kDarkTo = 0.02;             // of full scale: light in the dark shot that stops a scan
-constexpr double kDarkWarns = 0.004;         // that is only spoken of
 constexpr double kDarkLevel = 0.1;           // of the brightness that other LEDs let expect: did not light
 constexpr double kDimLevel = 0.35;           // of the brightness fitted to the others: gave too little
 constexpr double kDimWarns = 0.6;            // is only spoken of: glossy cloth may look so

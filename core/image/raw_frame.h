@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -53,5 +54,18 @@ struct RawFrame {
     return found > 0 ? found : white;
   }
 };
+
+/// A frame of the same body, levels and header, whose counts are all 0.
+inline RawFrame blank_like(const RawFrame& frame) {
+  return {
+      Image<std::uint16_t>(frame.counts.size()), frame.cfa, frame.black, frame.white, frame.shot, frame.full};
+}
+
+inline RawFrame copy_of(const RawFrame& frame) {
+  RawFrame copy = blank_like(frame);
+  for (int y = 0; y < frame.counts.height(); ++y)
+    std::copy_n(frame.counts.plane().row(y), frame.counts.width(), copy.counts.plane().row(y));
+  return copy;
+}
 
 }  // namespace weft

@@ -7,6 +7,9 @@
 
 namespace weft {
 
+/// Light in a dark shot that is spoken of: of its brighter tenth, a share of full scale.
+inline constexpr double kDarkWarns = 0.004;
+
 /// Where the counts of a dark shot lie.
 struct DarkCounts {
   std::array<double, 3> median = {};  ///< red, green, blue

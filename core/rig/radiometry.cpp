@@ -67,17 +67,17 @@ namespace weft {
 
 HWY_EXPORT(read_row);
 
-namespace {
-
-// What the measured black level has over the file's; the sites of the filter cell keep their differences.
-float black_offset(const RawFrame& like, const Response& response) {
-  if (!response.black_counts) return 0;
+std::array<std::array<float, 2>, 2> black_counts(const RawFrame& like, const Response& response) {
+  std::array<std::array<float, 2>, 2> black = like.black;
+  if (!response.black_counts) return black;
   double mean = 0;
   for (const auto& row : like.black) mean += static_cast<double>(row[0] + row[1]) / 4;
-  return static_cast<float>(*response.black_counts - mean);
+  const auto offset = static_cast<float>(*response.black_counts - mean);
+  for (auto& row : black) {
+    for (float& level : row) level += offset;
+  }
+  return black;
 }
-
-}  // namespace
 
 std::array<float, 3> measured_full(const RawFrame& frame, const Response& response) {
   if (!response.levels || response.levels->full_rgb.empty()) return {};
@@ -92,8 +92,8 @@ Radiometry::Radiometry(const RawFrame& like, const RawFrame* dark, const Respons
                        Exposure exposure)
     : dark_(dark != nullptr ? dark->counts.plane() : View<const std::uint16_t>()),
       cfa_(like.cfa),
+      black_(dark == nullptr ? black_counts(like, response) : like.black),
       per_second_(static_cast<float>(1.0 / (exposure.exposure_us * 1e-6 * exposure.iso / 100))) {
-  const float measured = dark == nullptr ? black_offset(like, response) : 0;
   const std::array<float, 3> by_calibration = measured_full(like, response);
   double mean_range = 0;
   for (std::size_t y = 0; y < 2; ++y) {
@@ -101,7 +101,6 @@ Radiometry::Radiometry(const RawFrame& like, const RawFrame* dark, const Respons
       const float range = like.white - like.black[y][x];
       const int site = like.cfa.site[y][x];
       const auto channel = static_cast<std::size_t>(site == 3 ? 1 : site);
-      black_[y][x] = like.black[y][x] + measured;
       const float full = like.full[channel] > 0        ? like.full[channel]
                          : by_calibration[channel] > 0 ? by_calibration[channel]
                                                        : like.white;

@@ -32,6 +32,10 @@ inline double saturated_from(const RawFrame& frame, int x, int y) {
 /// other levels in their files.
 std::array<float, 3> measured_full(const RawFrame& frame, const Response& response);
 
+/// Counts of no light, [y & 1][x & 1]: the file's levels, moved to the mean that the response measured where
+/// it has one; sites of the filter cell keep their differences.
+std::array<std::array<float, 2>, 2> black_counts(const RawFrame& like, const Response& response);
+
 /// Variance of one reading: photon noise grows with the reading, the rest does not.
 struct NoiseModel {
   double per_reading = 0;  ///< variance a unit of reading
@@ -72,7 +76,7 @@ class Radiometry {
   using Cell = std::array<std::array<float, 2>, 2>;  ///< a value for each site of the filter cell
   View<const std::uint16_t> dark_;
   CfaPattern cfa_;
-  Cell black_ = {};
+  Cell black_;
   Cell saturated_from_ = {};  ///< counts
   Cell per_count_ = {};       ///< 1 / (white - black)
   Cell linearity_a_ = {};

@@ -79,6 +79,12 @@ void describe(Fields& fields, FrameFitFacts& f) {
   fields.value({"costs_deg", "By which it would turn the normals, degrees"}, f.costs_deg);
 }
 
+void describe(Fields& fields, RowFlickerFacts& r) {
+  fields.value({"period_rows", "Rows from one crest of its light to the next", {}, kMustSay}, r.period_rows);
+  fields.value({"sigma", "Standard deviation of the frames' rows"}, r.sigma);
+  fields.value({"costs_deg", "By which it would turn the normals, degrees"}, r.costs_deg);
+}
+
 void describe(Fields& fields, RoomLightFacts& r) {
   fields.value({"share", "Of the mean reading; below 0 in the dark shot alone", {}, kMustSay}, r.share);
   fields.value({"sigma", "Standard deviation of it"}, r.sigma);
@@ -95,7 +101,7 @@ void describe(Fields& fields, ConditionFacts& c) {
   fields.object({"cloth_gains", "How bright LEDs were, by what the cloth tells", {}, kUnlessEmpty},
                 c.cloth_gains);
   fields.list({"frames", "How each frame fits the others", {}, kUnlessEmpty}, c.frames);
-  fields.value({"rows_period", "Rows from one crest of flickering light to the next"}, c.rows_period);
+  fields.object({"flicker", "Of light along rows", {}, kUnlessEmpty}, c.flicker);
   fields.object({"room", "Light of frames or dark shot alone", {}, kUnlessEmpty}, c.room);
 }
 

@@ -84,6 +84,12 @@ struct FrameFitFacts {
   std::vector<int> part;            ///< of the frame that does not fit: x0, y0, x1, y1; empty: none
   std::optional<double> costs_deg;  ///< by which it turns the normals, left alone
 };
+/// Light that flickers while the shutter goes over the sensor.
+struct RowFlickerFacts {
+  double period_rows = 0;  ///< rows of pixels from crest to crest
+  double sigma = 0;        ///< of FrameFitFacts::rows
+  double costs_deg = 0;    ///< by which it turns the normals, left alone; 0 where it was left as it is
+};
 /// Light that frames have and their dark shot lacks, or the other way round.
 struct RoomLightFacts {
   double share = 0, sigma = 0;  ///< of the mean reading
@@ -98,7 +104,7 @@ struct ConditionFacts {
   std::vector<ConditionedLed> drift;
   std::optional<ClothGains> cloth_gains;
   std::vector<FrameFitFacts> frames;
-  std::optional<double> rows_period;  ///< rows of pixels
+  std::optional<RowFlickerFacts> flicker;
   std::optional<RoomLightFacts> room;
 };
 void describe(Fields& fields, ConditionFacts& conditions);

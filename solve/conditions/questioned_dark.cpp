@@ -17,7 +17,11 @@
 #include "core/base/parallel.h"
 #include "core/base/percent.h"
 #include "core/base/statistics.h"
+#include "core/rig/dark_counts.h"
+#include "core/rig/exposure_words.h"
 #include "core/rig/radiometry.h"
+#include "core/rig/same_camera.h"
+#include "solve/conditions/frame_words.h"
 #include "solve/photographs/cell_noise.h"
 #include "solve/photographs/spread_cells.h"
 #include "solver/frame_fit/cell_fit.h"
@@ -26,27 +30,13 @@
 namespace weft::solve {
 namespace {
 
-// Light in the dark shot that is spoken of, as in the scan: a share of full scale.
-constexpr double kDarkWarns = 0.004;
 constexpr double kBrighter = 0.9;  // of the dark shot's sites, in the order of their light
 constexpr int kStep = 7;           // sites that are looked at; odd: of every colour
 
-using Cell = std::array<std::array<double, 2>, 2>;
+using Cell = std::array<std::array<float, 2>, 2>;
 
-// Counts of no light by what the calibration measured, else by the file.
-Cell black_of(const Mosaics& mosaics) {
-  const RawFrame& frame = mosaics.frames.front();
-  Cell black;
-  double mean = 0;
-  for (std::size_t y = 0; y < 2; ++y) {
-    for (std::size_t x = 0; x < 2; ++x)
-      black[y][x] = static_cast<double>(frame.black[y][x]), mean += black[y][x] / 4;
-  }
-  if (!mosaics.response.black_counts) return black;
-  for (auto& row : black) {
-    for (double& level : row) level += *mosaics.response.black_counts - mean;
-  }
-  return black;
+double level_at(const Cell& black, int x, int y) {
+  return static_cast<double>(black[static_cast<std::size_t>(y & 1)][static_cast<std::size_t>(x & 1)]);
 }
 
 // How a dark shot follows the mean light of the frames, site by site: level + share * light.
@@ -61,7 +51,7 @@ DarkLight light_of(const Mosaics& mosaics, const Cell& black) {
   std::vector<double> light;
   for (int y = 0; y < dark.counts.height(); y += kStep) {
     for (int x = y % 2; x < dark.counts.width(); x += kStep) {
-      const double level = black[static_cast<std::size_t>(y & 1)][static_cast<std::size_t>(x & 1)];
+      const double level = level_at(black, x, y);
       const double own = static_cast<double>(dark.counts(x, y)) - level;
       light.push_back(own / (static_cast<double>(dark.white) - level));
       if (dark.cfa.channel_at(x, y) != 1) continue;
@@ -80,20 +70,16 @@ DarkLight light_of(const Mosaics& mosaics, const Cell& black) {
   return found;
 }
 
-RawFrame empty_like(const RawFrame& frame) {
-  return {Image<std::uint16_t>(frame.counts.size()), frame.cfa, frame.black, frame.white, frame.shot};
-}
-
 // The dark shot with `share` of the frames' mean light more.
 RawFrame with_room(const Mosaics& mosaics, const Cell& black, double share, int threads) {
-  RawFrame dark = empty_like(mosaics.frames.front());
+  RawFrame dark = blank_like(mosaics.frames.front());
   const RawFrame* before = mosaics.dark ? &*mosaics.dark : nullptr;
   const double each = share / static_cast<double>(mosaics.count());
   parallel_for(static_cast<std::size_t>(dark.counts.height()), threads, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < dark.counts.width(); ++x) {
-      const double from = before != nullptr ? static_cast<double>(before->counts(x, y))
-                                            : black[row & 1U][static_cast<std::size_t>(x & 1)];
+      const double from =
+          before != nullptr ? static_cast<double>(before->counts(x, y)) : level_at(black, x, y);
       double light = 0;
       for (const RawFrame& frame : mosaics.frames) light += static_cast<double>(frame.counts(x, y)) - from;
       constexpr double kMost = std::numeric_limits<std::uint16_t>::max();
@@ -105,10 +91,10 @@ RawFrame with_room(const Mosaics& mosaics, const Cell& black, double share, int 
 }
 
 RawFrame without_light(const RawFrame& dark, const Cell& black) {
-  RawFrame unlit = empty_like(dark);
+  RawFrame unlit = blank_like(dark);
   for (int y = 0; y < dark.counts.height(); ++y) {
     for (int x = 0; x < dark.counts.width(); ++x) {
-      const double level = black[static_cast<std::size_t>(y & 1)][static_cast<std::size_t>(x & 1)];
+      const double level = level_at(black, x, y);
       unlit.counts(x, y) = static_cast<std::uint16_t>(std::lround(std::max(0.0, level)));
     }
   }
@@ -138,9 +124,10 @@ class DarkShot {
         photographs_(exposures.photographs),
         mosaics_(*exposures.photographs.mosaics()),
         threads_(exposures.context.threads),
-        black_(black_of(mosaics_)) {}
+        black_(black_counts(mosaics_.frames.front(), mosaics_.response)) {}
 
   void question() {
+    if (is_exposed_otherwise()) set_aside_for_its_exposure();
     const DarkLight light = mosaics_.dark ? light_of(mosaics_, black_) : DarkLight();
     const Look before = look_at(photographs_, threads_);
     if (is_lit(light) && set_aside(before, light)) return;
@@ -152,6 +139,27 @@ class DarkShot {
     constexpr double kLeastShare = 0.003, kLeast_sigmas = 8;
     return std::abs(light.bright) > kDarkWarns ||
            (light.share > kLeastShare && light.share > kLeast_sigmas * light.sigma);
+  }
+
+  bool is_exposed_otherwise() const {
+    const std::optional<Shot>& dark = exposures_.plan.dark;
+    const Shot& lit = exposures_.plan.lit.front();
+    return mosaics_.dark && dark &&
+           !(same_setting(dark->exposure_us, lit.exposure_us) && same_setting(dark->iso, lit.iso));
+  }
+
+  void set_aside_for_its_exposure() {
+    const solver::CellFit before = look_at(photographs_, threads_).fit;
+    mosaics_.set_dark(without_light(*mosaics_.dark, black_));
+    const solver::CellChange change = solver::change_of(look_at(photographs_, threads_).fit, before);
+    const Shot &dark = *exposures_.plan.dark, &lit = exposures_.plan.lit.front();
+    say({"DARK_SHOT",
+         fmt::format(
+             "The dark shot was exposed for {} at ISO {:g} and the frames for {} at ISO {:g}, which {}; "
+             "the black level stands in its place",
+             exposure_words(dark.exposure_us), dark.iso, exposure_words(lit.exposure_us), lit.iso,
+             words_of(change)),
+         "expose it as the frames; " + again()});
   }
 
   // A dark shot can have too much light only where it is seen to have some.
@@ -180,8 +188,8 @@ class DarkShot {
              "The dark shot is {}: it has {} percent of full scale that the frames have not, which {}; "
              "the black level stands in its place",
              light.bright > 0 ? "lit" : "darker than black", percent_words(std::abs(light.bright)),
-             costs(change)),
-         "switch the lamps off and take it again: " + again(0)});
+             words_of(change)),
+         "switch the lamps off; " + again()});
     note(before.room, change);
     return true;
   }
@@ -197,23 +205,17 @@ class DarkShot {
          share > 0
              ? fmt::format("Light of the room is in all frames and {}: {}, which {}; it was taken off",
                            mosaics_.dark ? "the dark shot lacks it" : "there is no dark shot", amount,
-                           costs(change))
+                           words_of(change))
              : fmt::format(
                    "The dark shot has light that the frames have not: {}, which {}; that was given back",
-                   amount, costs(change)),
-         share > 0 ? "darken the room, or take the dark shot in the same light and without a cap: " + again(0)
-                   : "darken the room and take it again: " + again(0)});
+                   amount, words_of(change)),
+         share > 0
+             ? "darken the room, or leave the light as it is and the cap off for the dark shot; " + again()
+             : "darken the room; " + again()});
     note(before.room, change);
   }
 
-  static std::string costs(const solver::CellChange& change) {
-    return fmt::format("turns the normals by {:.2g}\u00b0 and makes albedo {} percent too {}",
-                       change.turned_deg, percent_words(std::abs(change.albedo)),
-                       change.albedo > 0 ? "bright" : "dark");
-  }
-  std::string again(int led) const {
-    return fmt::format("weft scan --again {} -o {}", led, exposures_.plan.session_name);
-  }
+  std::string again() const { return how_again(exposures_, 0); }
   void say(Verdict verdict) {
     lend(std::get<Mosaics>(exposures_.beside.repeats));
     if (photographs_.parallel) lend(std::get<Mosaics>(*photographs_.parallel));

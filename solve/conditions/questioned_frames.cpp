@@ -15,6 +15,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/percent.h"
+#include "solve/conditions/frame_words.h"
 #include "solve/photographs/cell_noise.h"
 #include "solve/photographs/spread_cells.h"
 #include "solver/frame_fit/cell_fit.h"
@@ -27,20 +28,19 @@ namespace {
 constexpr std::size_t kFewestRest = 5;    // frames that stay
 constexpr double kMostAccused = 1.0 / 3;  // of the frames: else it is not the frames
 
-// Rows of a mosaic whose counts are all one, and below black.
-std::optional<Rect> rows_without_reading(const RawFrame& frame) {
+// Rows of a mosaic whose counts are all one, and below black, in bands of rows that follow each other.
+std::vector<Rect> rows_without_reading(const RawFrame& frame) {
   const Size size = frame.counts.size();
   const float black = std::min({frame.black[0][0], frame.black[0][1], frame.black[1][0], frame.black[1][1]});
-  int first = -1, last = -1;
+  std::vector<Rect> bands;
   for (int y = 0; y < size.height; ++y) {
     const std::uint16_t* row = frame.counts.plane().row(y);
     if (!(static_cast<float>(row[0]) < black - 1)) continue;
     if (!std::all_of(row, row + size.width, [&](std::uint16_t count) { return count == row[0]; })) continue;
-    if (first < 0) first = y;
-    last = y;
+    if (bands.empty() || bands.back().y1 != y) bands.push_back({0, y, size.width, y});
+    bands.back().y1 = y + 1;
   }
-  if (first < 0) return std::nullopt;
-  return Rect{0, first, size.width, last + 1};
+  return bands;
 }
 
 // What was done to frames until now.
@@ -48,17 +48,6 @@ std::vector<FrameMend> mends_of(const Photographs& photographs) {
   const Mosaics* mosaics = photographs.mosaics();
   if (mosaics == nullptr || mosaics->mends.empty()) return std::vector<FrameMend>(photographs.count());
   return mosaics->mends;
-}
-
-std::string name_in(const Exposures& exposures, std::size_t k) {
-  if (exposures.plan.is_of_rig) return fmt::format("LED {}", exposures.photographs.leds[k]);
-  return fmt::format("photograph {} ({})", k + 1, exposures.plan.lit[k].file);
-}
-
-std::string how_again(const Exposures& exposures, std::size_t k) {
-  if (!exposures.plan.is_of_rig) return "photograph it again, or leave it out of the list";
-  return fmt::format("take it again: weft scan --again {} -o {}", exposures.photographs.leds[k],
-                     exposures.plan.session_name);
 }
 
 class FrameQuestions {
@@ -78,8 +67,8 @@ class FrameQuestions {
   }
 
  private:
-  std::string name_of(std::size_t k) const { return name_in(exposures_, k); }
-  std::string again(std::size_t k) const { return how_again(exposures_, k); }
+  std::string name(std::size_t k) const { return name_of(exposures_, k); }
+  std::string again(std::size_t k) const { return how_again(exposures_, number_of(exposures_, k)); }
   void say(Verdict verdict) { photographs_.conditions.of_frames.push_back(std::move(verdict)); }
 
   void look_again() {
@@ -137,21 +126,21 @@ class FrameQuestions {
   }
 
   void tell_waves(const solver::CellChange& change) {
-    ConditionFacts& facts = photographs_.conditions.facts;
-    facts.rows_period = kCellSide * waves_->period_rows;
+    const double period = kCellSide * waves_->period_rows;
+    photographs_.conditions.facts.flicker = {period, waves_->sigma, change.turned_deg};
     std::vector<std::string> names;
     for (std::size_t k = 0; k < mends_.size(); ++k) {
       if (!waves_->gain[k].empty())
-        names.push_back(fmt::format("{} by {} percent", name_of(k), percent_words(waves_->amplitude[k])));
+        names.push_back(fmt::format("{} by {} percent", name(k), percent_words(waves_->amplitude[k])));
     }
+    const std::string done =
+        waves_->are_even
+            ? fmt::format("left alone, that turns the normals by {:.2g}\u00b0; it was evened out",
+                          change.turned_deg)
+            : "it was left as it is";
     say({"ROWS_FLICKER",
-         fmt::format("Light flickers along the rows, {:.3g} rows from crest to crest: {}; {}",
-                     *facts.rows_period, fmt::join(names, ", "),
-                     waves_->are_even
-                         ? fmt::format("left alone, that turns the normals by {:.2g}\u00b0; it was evened "
-                                       "out",
-                                       change.turned_deg)
-                         : "it was left as it is"),
+         fmt::format("Light flickers along the rows, {:.3g} rows from crest to crest: {} (sigma {}); {}",
+                     period, fmt::join(names, ", "), percent_words(waves_->sigma), done),
          "drive the LEDs by a steady current and not by pulses, and expose for whole periods of the mains"});
   }
 
@@ -159,7 +148,7 @@ class FrameQuestions {
     const double noise = cell_noise(cells_, fit_, photographs_.noise());
     for (std::size_t k = 0; k < misfits_.size(); ++k) {
       FrameFitFacts& facts = photographs_.conditions.facts.frames.emplace_back();
-      facts.led = exposures_.plan.is_of_rig ? photographs_.leds[k] : static_cast<int>(k) + 1;
+      facts.led = number_of(exposures_, k);
       facts.missed = misfits_[k].missed;
       facts.sigma = noise;
       if (waves_ && !waves_->gain[k].empty()) facts.rows = waves_->amplitude[k];
@@ -182,20 +171,34 @@ class FrameQuestions {
     bool hides = false;
     for (std::size_t k = 0; k < misfits_.size(); ++k) {
       const solver::FrameMisfit& misfit = misfits_[k];
-      if (!misfit.part || mends_[k].missing) continue;
+      if (!misfit.part) continue;
       const Rect part = pixels_of(*misfit.part);
-      mends_[k].missing = part;
+      const solver::CellChange cost = cost_of(k, *misfit.part);
+      mends_[k].missing.push_back(part);
       hides = true;
-      photographs_.conditions.facts.frames[k].part = {part.x0, part.y0, part.x1, part.y1};
+      FrameFitFacts& facts = photographs_.conditions.facts.frames[k];
+      facts.part = {part.x0, part.y0, part.x1, part.y1};
+      facts.costs_deg = cost.turned_deg;
       say({"FRAME_IN_PART",
            fmt::format(
                "A part of the frame of {} does not fit the others, {} percent of it, rows {} to {}, columns "
-               "{} to {}: it has {} percent of the light that they predict; it was not read",
-               name_of(k), percent_words(misfit.part_share), part.y0, part.y1 - 1, part.x0, part.x1 - 1,
-               percent_words(std::max(0.0, misfit.part_light))),
+               "{} to {}: it has {} percent of the light that they predict; by least squares it {}; it was "
+               "not read",
+               name(k), percent_words(misfit.part_share), part.y0, part.y1 - 1, part.x0, part.x1 - 1,
+               percent_words(std::max(0.0, misfit.part_light)), words_of(cost)),
            "see whether something lay before the lamp, or the LED came late; " + again(k)});
     }
     if (hides) mend_frames(mends_, photographs_.frames);
+  }
+
+  // What cells of a photograph do where every reading counts alike.
+  solver::CellChange cost_of(std::size_t k, const Rect& part) const {
+    solver::FrameCells without = cells_;
+    for (int y = part.y0; y < part.y1; ++y) {
+      for (int x = part.x0; x < part.x1; ++x)
+        without.value[without.cell_at(x, y) * without.count + k] = std::numeric_limits<float>::quiet_NaN();
+    }
+    return solver::change_of(solver::plain_fit(without, threads_), solver::plain_fit(cells_, threads_));
   }
 
   // Two frames that show each other's LEDs are told by the diagnosis.
@@ -205,8 +208,8 @@ class FrameQuestions {
   }
 
   std::string cause_of(const solver::FrameMisfit& misfit) const {
-    if (misfit.same_as) return fmt::format("; it shows what that of {} shows", name_of(*misfit.same_as));
-    if (misfit.lit_by) return fmt::format("; it would be right for {}", name_of(*misfit.lit_by));
+    if (misfit.same_as) return fmt::format("; it shows what that of {} shows", name(*misfit.same_as));
+    if (misfit.lit_by) return fmt::format("; it would be right for {}", name(*misfit.lit_by));
     if (misfit.is_turned) return "; it would fit if it were turned by half";
     return "";
   }
@@ -230,49 +233,28 @@ class FrameQuestions {
     }
   }
 
-  // What a stranger would do where every reading counts alike, and the other strangers are away.
-  solver::CellChange cost_of(std::size_t stranger, const std::vector<std::size_t>& strangers) const {
-    solver::FrameCells cells = cells_;
-    const auto hide = [&](std::size_t k) {
-      for (std::size_t at = k; at < cells.value.size(); at += cells.count)
-        cells.value[at] = std::numeric_limits<float>::quiet_NaN();
-    };
-    for (const std::size_t k : strangers) {
-      if (k != stranger) hide(k);
-    }
-    const solver::CellFit with = solver::plain_fit(cells, threads_);
-    hide(stranger);
-    return solver::change_of(solver::plain_fit(cells, threads_), with);
-  }
-
   Result<void> leave_out_strangers() {
     accuse_copies();
-    std::vector<std::size_t> strangers;
-    for (std::size_t k = 0; k < misfits_.size(); ++k) {
-      if (misfits_[k].fits_nothing && !are_exchanged(k)) strangers.push_back(k);
-    }
+    std::vector<std::size_t> accused = strangers();
+    std::erase_if(accused, [&](std::size_t k) { return are_exchanged(k); });
     const std::size_t count = photographs_.count();
-    if (strangers.empty() || count - strangers.size() < kFewestRest ||
-        static_cast<double>(strangers.size()) > kMostAccused * static_cast<double>(count))
+    if (accused.empty() || count - accused.size() < kFewestRest ||
+        static_cast<double>(accused.size()) > kMostAccused * static_cast<double>(count))
       return {};
-    for (const std::size_t k : strangers) {
+    for (const std::size_t k : accused) {
       const solver::FrameMisfit& misfit = misfits_[k];
-      const solver::CellChange cost = cost_of(k, strangers);
+      const solver::CellChange cost = cost_of(k, {0, 0, cells_.columns, cells_.rows});
       photographs_.conditions.facts.frames[k].costs_deg = cost.turned_deg;
       say({"FRAME_FITS_NOTHING",
            fmt::format(
                "The frame of {} fits none of the others: what they predict is missed by {} percent, in the "
-               "others by {}{}; by least squares it turns the normals by {:.2g}{} and makes albedo {} "
-               "percent "
-               "too {}; it was left out",
-               name_of(k), percent_words(misfit.missed), percent_words(misfit.typical), cause_of(misfit),
-               cost.turned_deg, "\u00b0", percent_words(std::abs(cost.albedo)),
-               cost.albedo > 0 ? "bright" : "dark"),
+               "others by {}{}; by least squares it {}; it was left out",
+               name(k), percent_words(misfit.missed), percent_words(misfit.typical), cause_of(misfit),
+               words_of(cost)),
            "see whether it is the right photograph and nothing moved; " + again(k)});
-      photographs_.conditions.facts.left_out.push_back(
-          {exposures_.plan.is_of_rig ? photographs_.leds[k] : static_cast<int>(k) + 1, "fits nothing"});
+      photographs_.conditions.facts.left_out.push_back({number_of(exposures_, k), "fits nothing"});
     }
-    return leave_out(strangers, photographs_);
+    return leave_out(accused, photographs_);
   }
 
   const Exposures& exposures_;
@@ -291,22 +273,23 @@ Result<void> hide_unread_rows(const Exposures& exposures) {
   Photographs& photographs = exposures.photographs;
   const Mosaics* mosaics = photographs.mosaics();
   if (mosaics == nullptr) return {};
-  std::vector<std::optional<Rect>> rows(mosaics->count());
-  parallel_for(rows.size(), exposures.context.threads,
-               [&](std::size_t k, int) { rows[k] = rows_without_reading(mosaics->frames[k]); });
-  std::vector<FrameMend> mends(rows.size());
+  std::vector<FrameMend> mends(mosaics->count());
+  parallel_for(mends.size(), exposures.context.threads,
+               [&](std::size_t k, int) { mends[k].missing = rows_without_reading(mosaics->frames[k]); });
   bool hides = false;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (!rows[k]) continue;
+  for (std::size_t k = 0; k < mends.size(); ++k) {
+    const std::vector<Rect>& bands = mends[k].missing;
+    if (bands.empty()) continue;
     hides = true;
-    mends[k].missing = rows[k];
+    int rows = 0;
+    for (const Rect& band : bands) rows += band.height();
     photographs.conditions.of_frames.push_back(
         {"FRAME_IN_PART",
-         fmt::format(
-             "The frame of {} holds one count, below black, in rows {} to {}: its transfer broke off; they "
-             "are not read",
-             name_in(exposures, k), rows[k]->y0, rows[k]->y1 - 1),
-         how_again(exposures, k)});
+         fmt::format("The frame of {} holds one count, below black, in {} rows from {} to {}: its transfer "
+                     "broke off; "
+                     "they are not read",
+                     name_of(exposures, k), rows, bands.front().y0, bands.back().y1 - 1),
+         how_again(exposures, number_of(exposures, k))});
   }
   if (hides) mend_frames(std::move(mends), photographs.frames);
   return {};

@@ -312,8 +312,10 @@ Result<Photographs> load_pose(const SolvePlan& plan, const JobContext& context) 
   FramesBeside beside;
   const auto read = plan.raw ? read_mosaics : read_developed;
   if (Result<void> ok = read(plan, context, *photographs, beside); !ok) return std::move(ok).error();
+  Stopwatch watch;
   if (Result<void> met = meet_conditions({plan, beside, *photographs, context}); !met)
     return std::move(met).error();
+  photographs->conditions.seconds = watch.lap();
   // Figures were published of luminance.
   if (plan.clipped == Clipped::kMark) photographs->plane_weights = measure_plane_weights(*photographs);
   return photographs;

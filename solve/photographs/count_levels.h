@@ -19,8 +19,8 @@ struct SettledLevels {
 };
 
 /// Makes the levels of a session's mosaics what their counts show them to be, where files say otherwise.
-/// `frames`: all of one body, exposure and set of levels, the
-/// first `lit` of them lit, the next the dark shot where there is one.
+/// `frames`: all of one body, exposure and set of levels, the first `lit` of them lit, the next the dark shot
+/// where there is one.
 ///
 /// Black and white: albedo goes by counts over white - black, as it did when the calibration was made. Where
 /// the files' differ from those of the calibration (Response::levels), the dark shot, the black level or

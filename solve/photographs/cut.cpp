@@ -29,10 +29,8 @@ FrameMend cut_mend(const FrameMend& mend, Rect area) {
   FrameMend part;
   if (!mend.row_gain.empty())
     part.row_gain.assign(mend.row_gain.begin() + area.y0, mend.row_gain.begin() + area.y1);
-  if (mend.missing) {
-    const Rect& missing = *mend.missing;
-    part.missing = {missing.x0 - area.x0, missing.y0 - area.y0, missing.x1 - area.x0, missing.y1 - area.y0};
-  }
+  for (const Rect& m : mend.missing)
+    part.missing.push_back({m.x0 - area.x0, m.y0 - area.y0, m.x1 - area.x0, m.y1 - area.y0});
   return part;
 }
 

@@ -23,10 +23,12 @@ void mend(const FrameMend& mend, Rect part, View<float> out) {
       const float scale = 1 / mend.row_gain[static_cast<std::size_t>(y)];
       for (int x = 0; x < part.width(); ++x) row[x] *= scale;
     }
-    if (!mend.missing || y < mend.missing->y0 || y >= mend.missing->y1) continue;
-    const int from = std::max(part.x0, mend.missing->x0), to = std::min(part.x1, mend.missing->x1);
-    if (from < to)
-      std::fill(row + (from - part.x0), row + (to - part.x0), std::numeric_limits<float>::quiet_NaN());
+    for (const Rect& missing : mend.missing) {
+      if (y < missing.y0 || y >= missing.y1) continue;
+      const int from = std::max(part.x0, missing.x0), to = std::min(part.x1, missing.x1);
+      if (from < to)
+        std::fill(row + (from - part.x0), row + (to - part.x0), std::numeric_limits<float>::quiet_NaN());
+    }
   }
 }
 
@@ -145,7 +147,7 @@ void mend_frames(std::vector<FrameMend> mends, Frames& frames) {
   auto& developed = std::get<Developed>(frames);
   for (std::size_t k = 0; k < mends.size(); ++k) {
     const Size size = developed.rgb[k].size();
-    if (mends[k].row_gain.empty() && !mends[k].missing) continue;
+    if (mends[k].row_gain.empty() && mends[k].missing.empty()) continue;
     for (int c = 0; c < 3; ++c) mend(mends[k], {0, 0, size.width, size.height}, developed.rgb[k].plane(c));
     developed.page_out(k);
   }

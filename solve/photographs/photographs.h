@@ -67,7 +67,7 @@ struct Developed {
 /// What is done to the readings of one frame that does not fit the others.
 struct FrameMend {
   std::vector<float> row_gain;  ///< that each row is divided by; empty: none is
-  std::optional<Rect> missing;  ///< has no readings
+  std::vector<Rect> missing;    ///< has no readings
 };
 
 /// A mosaic once more at another exposure.
@@ -130,6 +130,7 @@ struct Conditions {
   std::vector<Verdict> of_frames;     ///< frames and dark shots that lie, and what was done
   std::vector<Verdict> doubts;        ///< whether lights and values are what they are taken for
   std::vector<std::string> assumed;   ///< of photographs, as of SolvePlan
+  double seconds = 0;                 ///< that this took
 };
 
 /// What a solve starts from, in memory: K photographs of one cloth, photograph k lit by light k of the field

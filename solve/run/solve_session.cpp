@@ -233,8 +233,12 @@ class Run {
     prepared.doubts = photographs.conditions.doubts;
     std::ranges::copy(photographs.conditions.assumed, std::back_inserter(facts_.assumed));
     prepared.fullness = fullness_of(photographs);
-    if (!plan_.is_of_rig) prepared.numbers = plan_.numbers();
+    if (!plan_.is_of_rig) {
+      prepared.numbers = plan_.numbers();
+      for (const UnusedLed& left : facts_.conditions->left_out) std::erase(prepared.numbers, left.led);
+    }
     seconds_.read = watch_.lap();
+    seconds_.conditions = photographs.conditions.seconds;
 
     facts_.registration.emplace();
     if (is_half()) {

@@ -40,7 +40,8 @@ struct SolveOptions {
 
 struct SolveSeconds {
   double read = 0, prepare = 0, solve = 0, write = 0, pictures = 0, report = 0, sync = 0, total = 0;
-  SolveWork work;  ///< `solve` by what it grows with
+  double conditions = 0;  ///< in `read`: frames are questioned and mended
+  SolveWork work;         ///< `solve` by what it grows with
 };
 
 /// What a solve left behind.

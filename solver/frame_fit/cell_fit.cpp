@@ -67,13 +67,12 @@ class RowFit {
     const std::size_t from = cell * cells_.count;
     const std::span<const float> values = values_of(cell);
     const double brightness = static_cast<double>(fit_.brightness[cell]);
-    const auto is_lit = [&](float value) { return value > kLitFrom * fit_.brightness[cell]; };
     Sums sums;
     Vec3 right;
     weights_.assign(values.size(), 0);
     std::size_t lit = 0;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      if (!(brightness > 0) || !is_lit(values[k])) continue;
+      if (!(brightness > 0) || !is_lit(cells_, fit_, cell, k)) continue;
       ++lit;
       const double error = sigma > 0 ? static_cast<double>(fit_.error[from + k]) / (kFarFrom * sigma) : 0;
       weights_[k] = std::isfinite(error) ? 1 / (1 + error * error) : 0;
@@ -110,7 +109,7 @@ double sigma_of(const FrameCells& cells, const CellFit& fit) {
   const std::size_t step = std::max<std::size_t>(1, cells.value.size() / kMostSampled) | 1U;
   std::vector<float> errors;
   for (std::size_t i = 0; i < cells.value.size(); i += step) {
-    if (cells.value[i] > kLitFrom * fit.brightness[i / cells.count] && std::isfinite(fit.error[i]))
+    if (is_lit(cells, fit, i / cells.count, i % cells.count) && std::isfinite(fit.error[i]))
       errors.push_back(std::abs(fit.error[i]));
   }
   if (errors.empty()) return 0;

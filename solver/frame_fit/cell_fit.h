@@ -21,6 +21,9 @@ struct FrameCells {
   std::vector<Vec3> direction;  ///< to the light, of unit length
 
   std::size_t cells() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  std::size_t cell_at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x);
+  }
 };
 
 /// A light that gives less than this share of the third brightest is in shadow, or so aslant that it may be.
@@ -34,6 +37,11 @@ struct CellFit {
   std::vector<float> error;
   double sigma = 0;  ///< of lit errors, by their median
 };
+
+/// Whether photograph k shows a cell lit.
+inline bool is_lit(const FrameCells& cells, const CellFit& fit, std::size_t cell, std::size_t k) {
+  return cells.value[cell * cells.count + k] > kLitFrom * fit.brightness[cell];
+}
 
 /// Least squares by cell over the lit readings, those that do not fit counting less (Cauchy's weights, 3
 /// sigma). A photograph that is wrong all over stays out of it where at least five others are right.

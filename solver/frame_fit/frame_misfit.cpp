@@ -15,11 +15,10 @@ namespace weft::solver {
 namespace {
 
 constexpr std::size_t kFewestLights = 6;
-constexpr double kIsMatt = 0.03;           // of the brightness: who is missed by more shines
-constexpr double kMissedTimesOfGloss = 4;  // as kMissedTimes
-constexpr int kAcross = 16, kDown = 12;    // blocks of the frame
-constexpr double kPartFrom = 0.15;         // of the brightness: a block that is missed by it does not fit
-constexpr double kPartTimes = 6;           // and by so many times the blocks of all frames
+constexpr double kIsMatt = 0.03;         // of the brightness: who is missed by more shines
+constexpr int kAcross = 16, kDown = 12;  // blocks of the frame
+constexpr double kPartFrom = 0.15;       // of the brightness: a block that is missed by it does not fit
+constexpr double kPartTimes = 6;         // and by so many times the blocks of all frames
 constexpr double kLeastPart = 0.015, kMostPart = 0.7;  // of the frame
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -29,44 +28,59 @@ double predicted(const FrameCells& cells, const CellFit& fit, std::size_t cell, 
          static_cast<double>(fit.error[at]) * static_cast<double>(fit.brightness[cell]);
 }
 
-double gain_of(const FrameCells& cells, const CellFit& fit, std::size_t k) {
+// Light of the lit cells of a part over what is predicted; 1 where too few tell.
+double light_in(const FrameCells& cells, const CellFit& fit, std::size_t k, const Rect& part) {
+  constexpr std::size_t kFewest = 20;
   std::vector<double> ratios;
-  for (std::size_t cell = 0; cell < cells.cells(); ++cell) {
-    const double expected = predicted(cells, fit, cell, k);
-    if (expected > static_cast<double>(kLitFrom * fit.brightness[cell]))
-      ratios.push_back(static_cast<double>(cells.value[cell * cells.count + k]) / expected);
+  for (int y = part.y0; y < part.y1; ++y) {
+    for (int x = part.x0; x < part.x1; ++x) {
+      const std::size_t cell = cells.cell_at(x, y);
+      const double expected = predicted(cells, fit, cell, k);
+      if (expected > static_cast<double>(kLitFrom * fit.brightness[cell]))
+        ratios.push_back(static_cast<double>(cells.value[cell * cells.count + k]) / expected);
+    }
   }
-  constexpr std::size_t kFewest = 50;
   return ratios.size() < kFewest ? 1 : std::max(0.0, median(std::move(ratios)));
 }
 
-struct Missed {
-  double all = kNone;          // median over cells
-  std::vector<double> blocks;  // medians of signed errors
-};
+// What a photograph is missed by, by cell: of the brightness, its gain taken off. NaN where nothing is known.
+std::vector<float> errors_of(const FrameCells& cells, const CellFit& fit, std::size_t k, double gain) {
+  std::vector<float> errors(cells.cells());
+  for (std::size_t cell = 0; cell < errors.size(); ++cell) {
+    const double value = static_cast<double>(cells.value[cell * cells.count + k]);
+    errors[cell] = static_cast<float>((value - gain * predicted(cells, fit, cell, k)) /
+                                      static_cast<double>(fit.brightness[cell]));
+  }
+  return errors;
+}
 
-Missed missed_of(const FrameCells& cells, const CellFit& fit, std::size_t k, double gain) {
-  std::vector<std::vector<float>> errors(kAcross * kDown);
-  std::vector<float> all;
+// The median of what cells beyond a part are missed by.
+double missed_beyond(const FrameCells& cells, const std::vector<float>& errors, const Rect& part) {
+  std::vector<float> sizes;
   for (int y = 0; y < cells.rows; ++y) {
     for (int x = 0; x < cells.columns; ++x) {
-      const auto cell =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(x);
-      const double expected = predicted(cells, fit, cell, k);
-      if (!std::isfinite(expected) || !(fit.brightness[cell] > 0)) continue;
-      const double error = (static_cast<double>(cells.value[cell * cells.count + k]) - gain * expected) /
-                           static_cast<double>(fit.brightness[cell]);
-      const auto block =
-          static_cast<std::size_t>(y * kDown / cells.rows * kAcross + x * kAcross / cells.columns);
-      errors[block].push_back(static_cast<float>(error));
-      all.push_back(std::abs(static_cast<float>(error)));
+      const float error = errors[cells.cell_at(x, y)];
+      const bool is_beyond = x < part.x0 || x >= part.x1 || y < part.y0 || y >= part.y1;
+      if (is_beyond && std::isfinite(error)) sizes.push_back(std::abs(error));
     }
   }
-  Missed missed;
-  missed.all = static_cast<double>(median(std::move(all)));
-  for (std::vector<float>& block : errors)
-    missed.blocks.push_back(static_cast<double>(median(std::move(block))));
-  return missed;
+  return static_cast<double>(median(std::move(sizes)));
+}
+
+// Medians of the errors of blocks.
+std::vector<double> by_blocks(const FrameCells& cells, const std::vector<float>& errors) {
+  std::vector<std::vector<float>> of_block(kAcross * kDown);
+  for (int y = 0; y < cells.rows; ++y) {
+    for (int x = 0; x < cells.columns; ++x) {
+      const auto block =
+          static_cast<std::size_t>(y * kDown / cells.rows * kAcross + x * kAcross / cells.columns);
+      if (const float error = errors[cells.cell_at(x, y)]; std::isfinite(error))
+        of_block[block].push_back(error);
+    }
+  }
+  std::vector<double> medians;
+  for (std::vector<float>& block : of_block) medians.push_back(static_cast<double>(median(std::move(block))));
+  return medians;
 }
 
 // The largest part of blocks that touch and do not fit.
@@ -105,40 +119,6 @@ Rect around(const std::vector<std::size_t>& part, const FrameCells& cells) {
           along(y1, kDown, cells.rows)};
 }
 
-// What a photograph is missed by beyond a part of it.
-double missed_beyond(const FrameCells& cells, const CellFit& fit, std::size_t k, double gain,
-                     const Rect& part) {
-  std::vector<float> errors;
-  for (int y = 0; y < cells.rows; ++y) {
-    for (int x = 0; x < cells.columns; ++x) {
-      if (x >= part.x0 && x < part.x1 && y >= part.y0 && y < part.y1) continue;
-      const auto cell =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(x);
-      const double expected = predicted(cells, fit, cell, k);
-      if (!std::isfinite(expected) || !(fit.brightness[cell] > 0)) continue;
-      const double value = static_cast<double>(cells.value[cell * cells.count + k]);
-      errors.push_back(
-          static_cast<float>(std::abs(value - gain * expected) / static_cast<double>(fit.brightness[cell])));
-    }
-  }
-  return static_cast<double>(median(std::move(errors)));
-}
-
-// Light in a part over what is predicted.
-double light_in(const FrameCells& cells, const CellFit& fit, std::size_t k, const Rect& part) {
-  std::vector<double> ratios;
-  for (int y = part.y0; y < part.y1; ++y) {
-    for (int x = part.x0; x < part.x1; ++x) {
-      const auto cell =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(x);
-      const double expected = predicted(cells, fit, cell, k);
-      if (expected > static_cast<double>(kLitFrom * fit.brightness[cell]))
-        ratios.push_back(static_cast<double>(cells.value[cell * cells.count + k]) / expected);
-    }
-  }
-  return ratios.empty() ? 1 : median(std::move(ratios));
-}
-
 // What is left of photograph k where it is compared with `other`, of the brightness: its readings, through
 // the best gain.
 template <typename Other>
@@ -166,7 +146,7 @@ double missed_by_any_light(const FrameCells& cells, const CellFit& fit, std::siz
   const auto each = [&](const auto& what) {
     for (std::size_t cell = 0; cell < cells.cells(); ++cell) {
       const float value = cells.value[cell * cells.count + k];
-      if (!(value > kLitFrom * fit.brightness[cell]) || !(length(fit.normal[cell]) > 0)) continue;
+      if (!is_lit(cells, fit, cell, k) || !(length(fit.normal[cell]) > 0)) continue;
       const double scale = 1 / static_cast<double>(fit.brightness[cell]);
       const Vec3 b = scale * fit.normal[cell];
       what(Eigen::Vector3d(b.x, b.y, b.z), scale * static_cast<double>(value));
@@ -206,37 +186,41 @@ void find_cause(const FrameCells& cells, const CellFit& fit, std::size_t k, Fram
 std::vector<FrameMisfit> frame_misfits(const FrameCells& cells, const CellFit& fit, int threads) {
   std::vector<FrameMisfit> all(cells.count);
   if (cells.count < kFewestLights) return all;
-  std::vector<Missed> missed(cells.count);
+  const Rect whole = {0, 0, cells.columns, cells.rows};
+  std::vector<std::vector<float>> errors(cells.count);
+  std::vector<std::vector<double>> blocks(cells.count);
   parallel_for(cells.count, threads, [&](std::size_t k, int) {
-    all[k].gain = gain_of(cells, fit, k);
-    missed[k] = missed_of(cells, fit, k, all[k].gain);
-    all[k].missed = missed[k].all;
+    all[k].gain = light_in(cells, fit, k, whole);
+    errors[k] = errors_of(cells, fit, k, all[k].gain);
+    blocks[k] = by_blocks(cells, errors[k]);
+    all[k].missed = missed_beyond(cells, errors[k], {});
   });
-  std::vector<double> blocks;
-  for (const Missed& each : missed) {
-    for (const double block : each.blocks) {
-      if (std::isfinite(block)) blocks.push_back(std::abs(block));
+  std::vector<double> sizes;
+  for (const std::vector<double>& of_frame : blocks) {
+    for (const double block : of_frame) {
+      if (std::isfinite(block)) sizes.push_back(std::abs(block));
     }
   }
   constexpr double kMostOfFrames = 0.75;  // one of six may be off all over
-  const double from = std::max(kPartFrom, kPartTimes * quantile(std::move(blocks), kMostOfFrames));
-  const auto times = [](double typical) { return typical > kIsMatt ? kMissedTimesOfGloss : kMissedTimes; };
+  const double part_from = std::max(kPartFrom, kPartTimes * quantile(std::move(sizes), kMostOfFrames));
   parallel_for(cells.count, threads, [&](std::size_t k, int) {
     FrameMisfit& misfit = all[k];
     std::vector<double> others;
     for (std::size_t j = 0; j < cells.count; ++j) {
-      if (j != k && std::isfinite(missed[j].all)) others.push_back(missed[j].all);
+      if (j != k && std::isfinite(all[j].missed)) others.push_back(all[j].missed);
     }
     misfit.typical = median(std::move(others));
-    const double fits_to = std::max(kMissedFrom, times(misfit.typical) * misfit.typical);
-    const auto blocks_off = largest_part(missed[k].blocks, std::max(from, kPartTimes * misfit.typical));
-    const double share = static_cast<double>(blocks_off.size()) / (kAcross * kDown);
-    const bool is_part = share >= kLeastPart && share <= kMostPart;
-    const Rect part = is_part ? around(blocks_off, cells) : Rect();
-    if (is_part && missed_beyond(cells, fit, k, misfit.gain, part) <= fits_to) {
-      misfit.part = part;
-      misfit.part_share = share;
-      misfit.part_light = light_in(cells, fit, k, part);
+    const double times = misfit.typical > kIsMatt ? kMissedTimesOfGloss : kMissedTimes;
+    const double fits_to = std::max(kMissedFrom, times * misfit.typical);
+    const auto off = largest_part(blocks[k], std::max(part_from, kPartTimes * misfit.typical));
+    const double share = static_cast<double>(off.size()) / (kAcross * kDown);
+    if (share >= kLeastPart && share <= kMostPart) {
+      const Rect part = around(off, cells);
+      if (missed_beyond(cells, errors[k], part) <= fits_to) {
+        misfit.part = part;
+        misfit.part_share = share;
+        misfit.part_light = light_in(cells, fit, k, part);
+      }
     }
     misfit.fits_nothing = !misfit.part && misfit.missed > fits_to;
     if (!misfit.fits_nothing) return;

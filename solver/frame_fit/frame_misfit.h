@@ -14,7 +14,7 @@ struct FrameMisfit {
   double gain = 1;     ///< its light over what the others predict, median over lit cells
   double missed = 0;   ///< with that gain: median of |error|, of the brightness
   double typical = 0;  ///< the same of the other photographs, their median
-  /// Where cells do not fit though they do elsewhere, and the share of the frame that they are.
+  /// Cells that do not fit though they do elsewhere, and the share of the frame that they are.
   std::optional<Rect> part;
   double part_share = 0;
   double part_light = 1;  ///< in that part, of what the others predict
@@ -30,8 +30,8 @@ struct FrameMisfit {
 };
 
 /// A photograph that fits nothing is missed by this share at least, and by so many times as much as the
-/// others are.
-inline constexpr double kMissedFrom = 0.03, kMissedTimes = 2.2;
+/// others are: the second where these are missed by over 0.03, as cloth that shines is.
+inline constexpr double kMissedFrom = 0.03, kMissedTimes = 2.2, kMissedTimesOfGloss = 4;
 
 /// Each photograph's. Nothing is said of fewer than six.
 std::vector<FrameMisfit> frame_misfits(const FrameCells& cells, const CellFit& fit, int threads);

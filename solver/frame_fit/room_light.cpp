@@ -66,7 +66,7 @@ std::optional<CellPart> part_of(const FrameCells& cells, const CellFit& fit,
     if (!std::isfinite(value)) return std::nullopt;  // full: its mean is not known
     mean += static_cast<double>(value) * static_cast<double>(cells.strength[from + k]) /
             static_cast<double>(count);
-    if (!misfits[k].is_wrong() && value > kLitFrom * brightness &&
+    if (!misfits[k].is_wrong() && is_lit(cells, fit, cell, k) &&
         std::abs(static_cast<double>(fit.error[from + k])) < kNoRoomFrom * fit.sigma)
       lit.push_back(k);
   }
@@ -122,7 +122,7 @@ double unlit_share(const FrameCells& cells, const CellFit& fit) {
     const float brightness = fit.brightness[i / cells.count];
     if (!std::isfinite(cells.value[i]) || !(brightness > 0)) continue;
     ++all;
-    unlit += !(cells.value[i] > kLitFrom * brightness);
+    unlit += !is_lit(cells, fit, i / cells.count, i % cells.count);
   }
   return all > 0 ? static_cast<double>(unlit) / static_cast<double>(all) : 1;
 }

@@ -22,7 +22,9 @@ constexpr std::size_t kFewestRows = 24;
 constexpr double kFewestWaves = 2, kShortestPeriod = 3;  // over the frame; rows of cells
 constexpr double kWaveWide = 5;                          // sigma; beyond, an error counts as that much
 constexpr double kWaveFrom_sigmas = 8;
-constexpr double kLeastAlike = 0.88;  // of a wave's power in each column, that which all columns share
+// Of a wave's power in each column, that which all columns share.
+constexpr double kLeastAlike = 0.88, kLeastAlikeBeyondCloth = 0.75;
+constexpr double kWidthOfLine = 2.5;  // of waves over the frame, by the window
 constexpr std::size_t kMostTried = 24;
 constexpr int kMostHarmonics = 9;
 constexpr std::size_t kFewestLitCells = 4;  // cells of a row
@@ -63,43 +65,60 @@ class Rows {
   std::vector<double> window_;
 };
 
-bool is_lit(const FrameCells& cells, const CellFit& fit, std::size_t cell, std::size_t k) {
-  return cells.value[cell * cells.count + k] > kLitFrom * fit.brightness[cell];
-}
+// Numbers of every row of every photograph.
+using RowsOf = std::vector<std::vector<double>>;
 
-// Calls what(row, column, error) for what is lit in a photograph.
+// Calls what(row, column, cell, error) for what is lit in a photograph.
 template <typename What>
 void for_each_error(const FrameCells& cells, const CellFit& fit, std::size_t k, const What& what) {
   const double most = kWaveWide * fit.sigma;
   for (int y = 0; y < cells.rows; ++y) {
     for (int x = 0; x < cells.columns; ++x) {
-      const auto cell =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(x);
+      const std::size_t cell = cells.cell_at(x, y);
       const double error = static_cast<double>(fit.error[cell * cells.count + k]);
       if (std::isfinite(error) && is_lit(cells, fit, cell, k))
-        what(static_cast<std::size_t>(y), static_cast<std::size_t>(x), std::clamp(error, -most, most), cell);
+        what(static_cast<std::size_t>(y), static_cast<std::size_t>(x), cell, std::clamp(error, -most, most));
     }
   }
 }
 
-std::vector<std::vector<double>> mean_errors(const FrameCells& cells, const CellFit& fit, const Rows& rows,
-                                             std::span<const std::size_t> strangers) {
-  std::vector<std::vector<double>> all;
+// Means over the lit cells of each row of number(cell, k, error), what is smooth taken off; a row without
+// such cells is like the one before.
+template <typename Number>
+RowsOf row_means(const FrameCells& cells, const CellFit& fit, const Rows& rows, const Number& number) {
+  RowsOf all;
   for (std::size_t k = 0; k < cells.count; ++k) {
     std::vector<double> sum(static_cast<std::size_t>(cells.rows)), lit(sum.size());
-    for_each_error(cells, fit, k,
-                   [&](std::size_t y, std::size_t, double error, std::size_t) { sum[y] += error, ++lit[y]; });
-    for (std::size_t y = 0; y < sum.size(); ++y) sum[y] = lit[y] >= kFewestLitCells ? sum[y] / lit[y] : 0;
+    for_each_error(cells, fit, k, [&](std::size_t y, std::size_t, std::size_t cell, double error) {
+      sum[y] += number(cell, k, error);
+      ++lit[y];
+    });
+    double last = 0;
+    for (std::size_t y = 0; y < sum.size(); ++y)
+      last = sum[y] = lit[y] >= kFewestLitCells ? sum[y] / lit[y] : last;
     rows.detrend(sum);
-    if (std::ranges::find(strangers, k) != strangers.end()) std::ranges::fill(sum, 0);
     all.push_back(std::move(sum));
   }
   return all;
 }
 
-double power(const std::vector<std::vector<double>>& rows_of, const Rows& rows, double waves) {
+// What rows are over what the other photographs predict, a share of their light.
+RowsOf row_errors(const FrameCells& cells, const CellFit& fit, const Rows& rows) {
+  return row_means(cells, fit, rows, [&](std::size_t cell, std::size_t k, double error) {
+    return error * static_cast<double>(fit.brightness[cell] / cells.value[cell * cells.count + k]);
+  });
+}
+
+// The logarithm of their light; the cloth is in it.
+RowsOf row_light(const FrameCells& cells, const CellFit& fit, const Rows& rows) {
+  return row_means(cells, fit, rows, [&](std::size_t cell, std::size_t k, double) {
+    return std::log(static_cast<double>(cells.value[cell * cells.count + k]));
+  });
+}
+
+double power(const RowsOf& values_of, const Rows& rows, double waves) {
   double sum = 0;
-  for (const std::vector<double>& values : rows_of) sum += std::norm(rows.wave(values, waves));
+  for (const std::vector<double>& values : values_of) sum += std::norm(rows.wave(values, waves));
   return sum;
 }
 
@@ -115,7 +134,7 @@ double alikeness(const FrameCells& cells, const CellFit& fit, const Rows& rows, 
     std::vector<std::vector<double>> columns(static_cast<std::size_t>(cells.columns),
                                              std::vector<double>(static_cast<std::size_t>(cells.rows)));
     for_each_error(cells, fit, k,
-                   [&](std::size_t y, std::size_t x, double error, std::size_t) { columns[x][y] = error; });
+                   [&](std::size_t y, std::size_t x, std::size_t, double error) { columns[x][y] = error; });
     Complex mean = 0;
     for (std::vector<double>& column : columns) {
       rows.detrend(column);
@@ -131,72 +150,108 @@ double alikeness(const FrameCells& cells, const CellFit& fit, const Rows& rows, 
   return of_wave > 0 ? std::sqrt(shared / of_wave) : 0;
 }
 
-// The most likely number of waves near `waves`.
-double refined(const std::vector<std::vector<double>>& rows_of, const Rows& rows, double waves) {
-  double low = waves - 1, high = waves + 1;
+// The most likely number of waves near `waves`, by golden sections.
+double refined(const RowsOf& errors, const Rows& rows, double waves) {
   constexpr double kGolden = 0.6180339887498949;
-  for (int step = 0; step < 30; ++step) {
-    const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    (power(rows_of, rows, a) > power(rows_of, rows, b) ? high : low) =
-        power(rows_of, rows, a) > power(rows_of, rows, b) ? b : a;
+  constexpr int kSteps = 30;
+  double low = waves - 1, high = waves + 1;
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+  double power_a = power(errors, rows, a), power_b = power(errors, rows, b);
+  for (int step = 0; step < kSteps; ++step) {
+    if (power_a > power_b) {
+      high = b, b = a, power_b = power_a;
+      a = high - kGolden * (high - low), power_a = power(errors, rows, a);
+    } else {
+      low = a, a = b, power_a = power_b;
+      b = low + kGolden * (high - low), power_b = power(errors, rows, b);
+    }
   }
   return (low + high) / 2;
 }
 
-// The logarithm of a photograph's light by row, of lit cells; the cloth is in it.
-std::vector<std::vector<double>> row_light(const FrameCells& cells, const CellFit& fit, const Rows& rows) {
-  std::vector<std::vector<double>> all;
-  for (std::size_t k = 0; k < cells.count; ++k) {
-    std::vector<double> sum(static_cast<std::size_t>(cells.rows)), lit(sum.size());
-    for_each_error(cells, fit, k, [&](std::size_t y, std::size_t, double, std::size_t cell) {
-      sum[y] += std::log(static_cast<double>(cells.value[cell * cells.count + k]));
-      ++lit[y];
-    });
-    double last = 0;
-    for (std::size_t y = 0; y < sum.size(); ++y)
-      last = sum[y] = lit[y] >= kFewestLitCells ? sum[y] / lit[y] : last;
-    rows.detrend(sum);
-    all.push_back(std::move(sum));
-  }
-  return all;
-}
+// How strong a period is in the light of rows: what albedo and tilt of the cloth explain of it, to first
+// order, and what they do not. Amplitudes, without what near periods have of them.
+struct InLight {
+  double by_cloth = 0, rest = 0;
+  double near = 0;  ///< what cloth explains of near periods
 
-// Waves of a multiple of the first, by photograph. What photographs share is the cloth's, where it is more
-// than what waves of any phase leave in a mean.
-std::vector<Complex> harmonic(const std::vector<std::vector<double>>& light, const Rows& rows, double waves) {
-  constexpr double kShared = 2;
-  std::vector<Complex> all;
-  Complex mean = 0;
-  double squares = 0;
-  for (const std::vector<double>& values : light) {
-    all.push_back(rows.wave(values, waves));
-    mean += all.back() / static_cast<double>(light.size());
-    squares += std::norm(all.back());
-  }
-  const double by_chance = std::sqrt(squares) / static_cast<double>(light.size());
-  if (std::abs(mean) > kShared * by_chance) {
-    for (Complex& wave : all) wave -= mean;
-  }
-  return all;
-}
+  // A weave along the rows has errors that are the same in all columns, too, but the light of all lamps has
+  // its yarns.
+  bool is_weave() const { return rest < kOfCloth * by_cloth; }
+  double least_alike() const { return rest > by_cloth ? kLeastAlikeBeyondCloth : kLeastAlike; }
+  bool tells_lamps() const { return near < kMostNear * rest; }
 
-// What rows of photographs are over what the others predict, by photograph; clipped as errors are.
-std::vector<std::vector<double>> row_errors(const FrameCells& cells, const CellFit& fit, const Rows& rows) {
-  std::vector<std::vector<double>> all;
-  for (std::size_t k = 0; k < cells.count; ++k) {
-    std::vector<double> sum(static_cast<std::size_t>(cells.rows)), lit(sum.size());
-    for_each_error(cells, fit, k, [&](std::size_t y, std::size_t, double error, std::size_t cell) {
-      sum[y] += error * static_cast<double>(fit.brightness[cell] / cells.value[cell * cells.count + k]);
-      ++lit[y];
-    });
-    for (std::size_t y = 0; y < sum.size(); ++y) sum[y] = lit[y] >= kFewestLitCells ? sum[y] / lit[y] : 0;
-    rows.detrend(sum);
-    all.push_back(std::move(sum));
-  }
-  return all;
-}
+  static constexpr double kOfCloth = 0.5, kMostNear = 0.4;
+};
 
-FrameCells divided_by(const FrameCells& cells, const std::vector<std::vector<double>>& logs) {
+class LightOfCloth {
+ public:
+  LightOfCloth(const FrameCells& cells, const CellFit& fit, const Rows& rows)
+      : light_(row_light(cells, fit, rows)), rows_(rows) {
+    Eigen::MatrixXd cloth(static_cast<Eigen::Index>(cells.count), kClothTerms);
+    for (std::size_t k = 0; k < cells.count; ++k) {
+      Vec3 sum;
+      for (std::size_t cell = 0; cell < cells.cells(); ++cell)
+        sum = sum + cells.direction[cell * cells.count + k];
+      cloth.row(static_cast<Eigen::Index>(k)) << 1, sum.x / sum.z, sum.y / sum.z;
+    }
+    explains_ = cloth * (cloth.transpose() * cloth).completeOrthogonalDecomposition().pseudoInverse() *
+                cloth.transpose();
+  }
+
+  InLight of(double waves) const {
+    const auto [by_cloth, rest] = powers(waves);
+    const double around = near(waves);
+    return {std::sqrt(std::max(0.0, by_cloth - around)), std::sqrt(rest), std::sqrt(around)};
+  }
+
+  // What lamps that flicker have most likely of a period, by photograph: cloth and lamps are as strong as
+  // their light shows, and a lamp's phase says nothing of another's.
+  std::vector<Complex> of_lamps(double waves, const std::vector<bool>& flickers) const {
+    const Eigen::VectorXcd light = waves_of(waves), explained = explains_ * light;
+    const auto count = static_cast<double>(light.size());
+    Eigen::VectorXd may(light.size());
+    for (Eigen::Index k = 0; k < may.size(); ++k) may[k] = flickers[static_cast<std::size_t>(k)] ? 1 : 0;
+    const double share = may.sum() / count;
+    const double lamp = (light - explained).squaredNorm() / ((count - kClothTerms) * share);
+    const double by_chance = kClothTerms * lamp * share;
+    constexpr double kMostByChance = 4;
+    const bool is_of_weave = explained.squaredNorm() - near(waves) > kMostByChance * by_chance;
+    const double cloth = (is_of_weave ? explained.squaredNorm() - by_chance : near(waves)) / kClothTerms;
+    constexpr double kNoise = 1e-3;  // of a lamp's power
+    Eigen::MatrixXd variance = cloth * explains_;
+    variance.diagonal() += lamp * may + Eigen::VectorXd::Constant(may.size(), kNoise * lamp);
+    const Eigen::VectorXcd likely =
+        lamp * may.asDiagonal() * variance.ldlt().solve(light.real()) +
+        Complex(0, 1) * (lamp * may.asDiagonal() * variance.ldlt().solve(light.imag()));
+    return {likely.data(), likely.data() + likely.size()};
+  }
+
+ private:
+  double near(double waves) const {
+    std::vector<double> all;
+    for (const double off : {-4, -3, 3, 4}) all.push_back(powers(std::abs(waves + off)).first);
+    return median(std::move(all));
+  }
+  std::pair<double, double> powers(double waves) const {
+    const Eigen::VectorXcd light = waves_of(waves), explained = explains_ * light;
+    return {explained.squaredNorm(), (light - explained).squaredNorm()};
+  }
+  Eigen::VectorXcd waves_of(double waves) const {
+    Eigen::VectorXcd all(explains_.rows());
+    for (std::size_t k = 0; k < light_.size(); ++k)
+      all[static_cast<Eigen::Index>(k)] = rows_.wave(light_[k], waves);
+    return all;
+  }
+
+  static constexpr Eigen::Index kClothTerms = 3;
+
+  RowsOf light_;
+  const Rows& rows_;
+  Eigen::MatrixXd explains_;
+};
+
+FrameCells divided_by(const FrameCells& cells, const RowsOf& logs) {
   FrameCells even = cells;
   const std::size_t row = static_cast<std::size_t>(cells.columns) * cells.count;
   for (std::size_t i = 0; i < even.value.size(); ++i)
@@ -218,22 +273,22 @@ class Waves {
 
   // Whether light evens the errors out. It is told by the rows themselves, as far as that fits the errors,
   // and then by what errors are left.
-  bool follow(const CellFit& fit) {
+  bool follow(const CellFit& fit, const LightOfCloth& light) {
     constexpr double kFits = 0.5, kIsEven = 0.25;  // of the power of the errors
     constexpr int kTimes = 3;
     constexpr double kStep = 0.8;
-    const double before = power_of(row_errors(cells_, fit, rows_));
-    add(row_light(cells_, fit, rows_), 1, true);
-    CellFit even = fit_cells(divided_by(cells_, logs_), threads_);
-    if (power_of(row_errors(divided_by(cells_, logs_), even, rows_)) > kFits * before) {
+    const RowsOf before = row_errors(cells_, fit, rows_);
+    for (const double number : numbers_) add(light.of_lamps(number, flickers_), number, 1);
+    RowsOf left = errors_left();
+    if (power_of(left) > kFits * power_of(before)) {
       for (std::vector<double>& log : logs_) std::ranges::fill(log, 0);
-      even = fit;
+      left = before;
     }
     for (int i = 0; i < kTimes; ++i) {
-      add(row_errors(divided_by(cells_, logs_), even, rows_), kStep, false);
-      even = fit_cells(divided_by(cells_, logs_), threads_);
+      for (const double number : numbers_) add(waves_of(left, number), number, kStep);
+      left = errors_left();
     }
-    return power_of(row_errors(divided_by(cells_, logs_), even, rows_)) < kIsEven * before;
+    return power_of(left) < kIsEven * power_of(before);
   }
 
   double amplitude(std::size_t k) const { return std::abs(rows_.wave(logs_[k], numbers_.front())); }
@@ -244,7 +299,12 @@ class Waves {
   }
 
  private:
-  double power_of(const std::vector<std::vector<double>>& errors) const {
+  RowsOf errors_left() const {
+    const FrameCells even = divided_by(cells_, logs_);
+    return row_errors(even, fit_cells(even, threads_), rows_);
+  }
+
+  double power_of(const RowsOf& errors) const {
     double sum = 0;
     for (std::size_t k = 0; k < errors.size(); ++k) {
       for (const double number : numbers_) sum += flickers_[k] ? std::norm(rows_.wave(errors[k], number)) : 0;
@@ -252,17 +312,17 @@ class Waves {
     return sum;
   }
 
-  void add(const std::vector<std::vector<double>>& light, double share, bool has_cloth) {
-    for (const double number : numbers_) {
-      std::vector<Complex> waves;
-      if (has_cloth) waves = harmonic(light, rows_, number);
-      for (std::size_t k = 0; k < light.size(); ++k) {
-        if (!flickers_[k]) continue;
-        const Complex wave = share * (has_cloth ? waves[k] : rows_.wave(light[k], number));
-        const Complex step = std::polar(1.0, 2 * kPi * number / static_cast<double>(cells_.rows));
-        Complex phase = 1;
-        for (double& log : logs_[k]) log += (wave * phase).real(), phase *= step;
-      }
+  std::vector<Complex> waves_of(const RowsOf& values, double number) const {
+    std::vector<Complex> all;
+    for (const std::vector<double>& each : values) all.push_back(rows_.wave(each, number));
+    return all;
+  }
+
+  void add(const std::vector<Complex>& waves, double number, double share) {
+    const Complex step = std::polar(1.0, 2 * kPi * number / static_cast<double>(cells_.rows));
+    for (std::size_t k = 0; k < waves.size(); ++k) {
+      Complex phase = flickers_[k] ? share * waves[k] : 0;
+      for (double& log : logs_[k]) log += phase.real(), phase *= step;
     }
   }
 
@@ -271,7 +331,7 @@ class Waves {
   std::vector<double> numbers_;  // of waves over the frame: the first, and its multiples that are there
   std::vector<bool> flickers_;   // by photograph
   int threads_;
-  std::vector<std::vector<double>> logs_;  // of the light of rows, by photograph
+  RowsOf logs_;  // of the light of rows
 };
 
 // Numbers of waves over the frame that errors have, the strongest first.
@@ -288,7 +348,7 @@ struct Spectrum {
   }
 };
 
-Spectrum spectrum_of(const std::vector<std::vector<double>>& errors, const Rows& rows, std::size_t most) {
+Spectrum spectrum_of(const RowsOf& errors, const Rows& rows, std::size_t most) {
   Spectrum spectrum;
   spectrum.powers.resize(most + 1);
   for (std::size_t waves = 1; waves <= most; ++waves)
@@ -304,15 +364,27 @@ std::optional<RowWaves> find_row_waves(const FrameCells& cells, const CellFit& f
   const auto count = static_cast<std::size_t>(cells.rows);
   if (count < kFewestRows) return std::nullopt;
   const Rows rows(count);
-  const std::vector<std::vector<double>> errors = mean_errors(cells, fit, rows, strangers);
+  RowsOf errors = row_errors(cells, fit, rows);
+  for (const std::size_t k : strangers) std::ranges::fill(errors[k], 0);
   const double most = static_cast<double>(count) / kShortestPeriod;
   const Spectrum spectrum = spectrum_of(errors, rows, static_cast<std::size_t>(most));
+  const LightOfCloth cloth(cells, fit, rows);
+  std::vector<double> weave;  // lines of it
   for (const std::size_t number : spectrum.strongest()) {
     const auto waves = static_cast<double>(number);
     const double rms = std::sqrt(spectrum.powers[number] / static_cast<double>(cells.count));
     if (spectrum.powers[number] < kWaveFrom_sigmas * kWaveFrom_sigmas * spectrum.floor || rms < kLeastWave)
       break;
-    if (waves < kFewestWaves || alikeness(cells, fit, rows, waves, strangers) < kLeastAlike) continue;
+    if (waves < kFewestWaves ||
+        std::ranges::any_of(weave, [&](double line) { return std::abs(waves - line) < kWidthOfLine; }))
+      continue;
+    const InLight in_light = cloth.of(waves);
+    if (in_light.is_weave()) {
+      weave.push_back(waves);
+      continue;
+    }
+    const double alike = alikeness(cells, fit, rows, waves, strangers);
+    if (alike < in_light.least_alike()) continue;
 
     RowWaves found;
     const double first = refined(errors, rows, waves);
@@ -327,7 +399,7 @@ std::optional<RowWaves> find_row_waves(const FrameCells& cells, const CellFit& f
     for (const std::vector<double>& each : errors)
       flickers.push_back(std::abs(rows.wave(each, first)) > kWaveFrom_sigmas * found.sigma);
     Waves light(cells, rows, std::move(numbers), flickers, threads);
-    found.are_even = light.follow(fit);
+    found.are_even = light.follow(fit, cloth) && in_light.tells_lamps() && alike > kLeastAlike;
     for (std::size_t k = 0; k < cells.count; ++k) {
       found.amplitude.push_back(flickers[k] ? light.amplitude(k) : 0);
       found.gain.push_back(flickers[k] ? light.gain(k) : std::vector<float>());

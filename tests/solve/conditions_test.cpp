@@ -270,7 +270,7 @@ TEST(Conditions, ArePutRightAndToldInThePhotographs) {
 
   EXPECT_THAT(photographs.leds, ElementsAre(1, 2, 4, 5, 6, 7, 8, 10));
   EXPECT_THAT(photographs.mosaics()->replaced, ElementsAre(Photosite{10, 20}));
-  const auto& [facts, warnings, of_frames, doubts, assumed] = photographs.conditions;
+  const auto& [facts, warnings, of_frames, doubts, assumed, seconds] = photographs.conditions;
   EXPECT_EQ(facts.hot_photosites, 1);
   EXPECT_FALSE(facts.veil);
   ASSERT_EQ(facts.left_out.size(), 2U);
@@ -287,6 +287,7 @@ TEST(Conditions, ArePutRightAndToldInThePhotographs) {
                   testing::HasSubstr("white patch 3 gives 0.4 times the light that most patches give under "
                                      "LED 8")));
   EXPECT_TRUE(of_frames.empty());
+  EXPECT_EQ(seconds, 0) << "their caller holds the watch";
   EXPECT_TRUE(doubts.empty());
   EXPECT_TRUE(assumed.empty());
 }

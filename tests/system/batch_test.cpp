@@ -12,12 +12,15 @@
 #include <random>
 #include <thread>
 
+#include "capture/raw/decode_raw.h"
+#include "core/base/files.h"
 #include "core/base/partial_name.h"
 #include "core/base/process.h"
 #include "core/image_io/image_io.h"
 #include "core/rig/session.h"
 #include "core/solve/solve.h"
 #include "library/catalogue/session_files.h"
+#include "simulator/camera/dng_writer.h"
 #include "solve/session/current.h"
 #include "tests/core/places.h"
 #include "tests/system/samples.h"
@@ -96,6 +99,29 @@ TEST_F(BatchTest, ARunSolvesWhatIsPlannedOnceAndAsWeftSolveDoes) {
   EXPECT_EQ(report["mean_solved"], 1);
   EXPECT_EQ(report["barely_solved"], Json::array());
   EXPECT_GT(fs::file_size(work_ / "night.results" / "report" / "report.html"), 1000U);
+}
+
+TEST_F(BatchTest, AFrameThatLiesStandsOnTheFirstPageWithItsCostAndWhatWasDone) {
+  fill_archive(2);
+  edit_json(session(1) / "session.json", [&](Json& s) {
+    const fs::path third = session(1) / s["shots"][2]["file"].get<std::string>();
+    const fs::path seventh = session(1) / s["shots"][6]["file"].get<std::string>();
+    Result<RawFrame> frame = capture::decode_raw(seventh);
+    ASSERT_TRUE(frame) << frame.error().message();
+    ++frame->counts(0, 0);  // a file of its own
+    ASSERT_TRUE(simulator::write_dng(third, *frame));
+    s["shots"][2]["sha256"] = *sha256_of_file(third);
+  });
+  plan();
+  ASSERT_EQ(run().exit_code, 0);
+  ASSERT_EQ(merge().exit_code, 0);
+  const std::string page = bytes_of(work_ / "night.results" / "report" / "report.html");
+  const std::size_t section = page.find("Frames that lie");
+  ASSERT_NE(section, page.npos);
+  const std::string told = page.substr(section, 1500);
+  EXPECT_THAT(told, HasSubstr("cloth-1"));
+  EXPECT_THAT(told, testing::ContainsRegex("LED 3[^<]* turns the normals by [0-9.]+[^<]*left out"));
+  EXPECT_THAT(told, testing::Not(HasSubstr("cloth-0"))) << "it has no such frame";
 }
 
 TEST_F(BatchTest, ATaskSolvesItsOwnSessionsAlone) {
