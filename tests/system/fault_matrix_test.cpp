@@ -20,6 +20,11 @@ TEST(FaultMatrix, OfBoardAndLightLosesMislabelsAndHalvesNoFrame) {
       {"board unplugged and plugged in", "wires swapped", "room light goes on", "LED stays lit"});
 }
 
+TEST(FaultMatrix, OfTheCamerasClockLosesMislabelsAndHalvesNoFrame) {
+  expect_each_goes_right(
+      {"camera's clock set back", "camera's clock set ahead", "camera's clock begins anew"});
+}
+
 TEST(FaultMatrix, OfProgramsAndPowerLosesMislabelsAndHalvesNoFrame) {
   expect_each_goes_right(
       {"disk is full", "weft serve is killed", "power cut of camera and board", "weft is killed"});

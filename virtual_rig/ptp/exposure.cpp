@@ -13,6 +13,8 @@ namespace weft::virtual_rig::ptp {
 namespace {
 
 constexpr std::int64_t kRawQuality = 4;
+constexpr double kHour_s = 3600;
+constexpr const char* kFirstTime = "20000101T000000";  ///< of a clock whose battery was changed
 
 RigClock::duration duration(double seconds) {
   return std::chrono::duration_cast<RigClock::duration>(std::chrono::duration<double>(seconds));
@@ -182,6 +184,7 @@ void PtpBody::befall(PtpFault fault) {
       properties_.turn(kBatteryLevel, static_cast<int>(std::lround(100 * options_.battery)));
       properties_.turn(kImageQuality, 4);
       properties_.turn_dial(true);
+      properties_.set_clock_offset(options_.clock_offset_s);
       cable_in_ = port_open_ = true;
       claimed_until_ = {};
       set_power(true);
@@ -189,6 +192,12 @@ void PtpBody::befall(PtpFault fault) {
     case PtpFault::kExposureChanged:
       properties_.change_exposure();
       return tell_changes({kShutterSpeed, kExposureTime});
+    case PtpFault::kClockBack:
+      return properties_.set_clock_offset(properties_.clock_offset_s() - kHour_s);
+    case PtpFault::kClockAhead:
+      return properties_.set_clock_offset(properties_.clock_offset_s() + kHour_s);
+    case PtpFault::kClockReset:
+      return properties_.set_clock_offset(offset_when_set_to(kFirstTime).value_or(0));
     case PtpFault::kUsbReplug:
       if (cable_in_) return break_link();
       cable_in_ = true;

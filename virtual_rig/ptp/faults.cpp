@@ -62,6 +62,9 @@ constexpr auto kFaultKinds = std::to_array<PtpFaultKind>({
     {kDialTurned, kBefore, "dial_turned", "Somebody turns the dial from M to P."},
     {kRawOff, kBefore, "raw_off", "Somebody sets the picture quality to JPEG."},
     {kExposureChanged, kBefore, "exposure_changed", "Somebody changes the shutter time by a step."},
+    {kClockBack, kBefore, "clock_back", "The camera's clock is set back by an hour."},
+    {kClockAhead, kBefore, "clock_ahead", "The camera's clock is set ahead by an hour."},
+    {kClockReset, kBefore, "clock_reset", "The camera's clock begins anew at the year 2000."},
     {kUsbUnplug, kShot, "usb_unplug", "The USB cable is pulled in the exposure and stays out."},
     {kUsbUnplugInData, kShot, "usb_unplug_in_data",
      "The USB cable is pulled when half of the picture has been sent, and stays out."},
@@ -79,7 +82,7 @@ constexpr auto kFaultKinds = std::to_array<PtpFaultKind>({
     {kNeverLive, kLook, "never_live",
      "The camera starts live view and says ever after, until it is switched off, that it is not in it."},
     {kWell, kBefore, "well",
-     "All is well again: power, cable, battery, dial, quality; faults that still wait are forgotten."},
+     "All is well again: power, cable, battery, dial, quality, clock; faults that still wait are forgotten."},
 });
 
 }  // namespace

@@ -60,6 +60,7 @@ class PropertyTable {
   double exposure_us() const;
   double f_number() const;
   double clock_offset_s() const { return clock_offset_s_; }
+  void set_clock_offset(double offset_s) { clock_offset_s_ = offset_s; }
 
  private:
   Property* find(std::uint16_t code);

@@ -54,7 +54,7 @@ std::vector<Befallen> of_shots() {
           {"no_answer"},           {"data_stalls"},        {"data_ends_early"},      {"capture_busy"},
           {"busy_for_ever"},       {"no_object"},          {"object_size_lie"},      {"short_data"},
           {"no_capture_complete"}, {"property_noise"},     {"unsupported_property"}, {"duplicate_frame"},
-          {"power_cycle"}};
+          {"power_cycle"},         {"clock_back"},         {"clock_ahead"},          {"clock_reset"}};
 }
 
 INSTANTIATE_TEST_SUITE_P(OfAShot, CameraFaults, testing::ValuesIn(of_shots()), [](const auto& befallen) {

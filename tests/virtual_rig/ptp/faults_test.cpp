@@ -264,6 +264,22 @@ TEST(CameraFaults, HandsOnTheBodyWaitForTheShotBefore) {
   EXPECT_EQ(client->get("shutterspeed2"), "1/50");
 }
 
+TEST(CameraFaults, AClockThatIsSetStepsByAsMuch) {
+  Studio studio(quick());
+  // A client keeps for a while what it has read.
+  const auto clock = [&] { return std::stod(connected(studio.network())->get("datetime")); };
+  const double before = clock();
+  studio.inject("clock_back");
+  EXPECT_NEAR(clock() - before, -3600, 5);
+  studio.inject("clock_ahead");
+  studio.inject("clock_ahead");
+  EXPECT_NEAR(clock() - before, 3600, 5);
+  studio.inject("clock_reset");
+  EXPECT_NEAR(clock(), 946684800, 86400) << "the year 2000 of any zone";
+  studio.inject("well");
+  EXPECT_NEAR(clock() - before, 0, 5);
+}
+
 TEST(CameraFaults, AKilledClientsShotIsTheNextSessionsFirst) {
   ClientProcess client([](const std::string& port) {
     const auto child = connected(port);
