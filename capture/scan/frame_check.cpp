@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "capture/raw/decode_raw.h"
@@ -31,6 +32,15 @@ Result<void> ImageCount::check(const Photograph& photograph) {
   return another(fmt::format("its number is {} where {} was expected: somebody else released the shutter",
                              number, *last + 1),
                  photograph);
+}
+
+Result<void> check_new(const Photograph& photograph, const std::vector<Shot>& kept,
+                       const std::string& where) {
+  const auto same = std::ranges::find(kept, photograph.sha256, &Shot::sha256);
+  if (same == kept.end()) return {};
+  return Error{ErrorKind::kProtocol, "the camera delivered one photograph twice", where,
+               fmt::format("the file is that of {}, byte for byte", same->file),
+               "leave the camera alone while it scans, and switch it off and on if this comes again"};
 }
 
 Result<void> check_alike(const RawFrame& frame, const RawFrame& first, Size first_size,

@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "capture/devices.h"
 #include "core/base/result.h"
 #include "core/image/raw_frame.h"
 #include "core/rig/calibration.h"
+#include "core/rig/session.h"
 
 namespace weft::capture {
 
@@ -32,6 +34,9 @@ class ImageCount {
   bool is_same_connection_ = false;
   std::uint32_t failed_ = 0;
 };
+
+/// Whether none of the shots that are kept has this file, byte for byte: kProtocol names the one that has.
+Result<void> check_new(const Photograph& photograph, const std::vector<Shot>& kept, const std::string& where);
 
 /// Whether frames are of one camera with one setting: size, filters, levels, model, serial number.
 Result<void> check_alike(const RawFrame& frame, const RawFrame& first_without_counts, Size first_size,

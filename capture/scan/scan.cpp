@@ -432,6 +432,8 @@ class Scan {
 
   Kept checked_and_kept(const DueShot& shot, const Photograph& photograph, FramesSoFar& so_far) try {
     const std::string where = fmt::format("{} ({})", name_of(shot), file_stem(shot));
+    if (Result<void> is_new = check_new(photograph, journal_->session().shots, where); !is_new)
+      return unusable(shot, "unlike", is_new.error(), {shot.index});
     Result<RawFrame> frame = decode_as_calibrated(photograph.file, calibration_);
     if (!frame) return unusable(shot, "damaged", frame.error(), {shot.index});
     if (!so_far.first) {
@@ -521,9 +523,7 @@ class Scan {
 
   std::string names_of(const std::vector<int>& shots) const {
     std::string names;
-    for (const int index : shots) {
-      names += (names.empty() ? "" : ", ") + file_stem(planned(index));
-    }
+    for (const int index : shots) names += (names.empty() ? "" : ", ") + file_stem(planned(index));
     return names;
   }
 

@@ -84,5 +84,19 @@ TEST(FrameCheck, NamesWhatDiffersFromTheFirstFrame) {
   EXPECT_THAT(check_alike(other, first, {8, 6}, "x").error().why, HasSubstr("serial number 2"));
 }
 
+TEST(CheckNew, RefusesAFileThatAnotherShotHasAndNamesIt) {
+  Shot kept;
+  kept.file = "raw/00_led00.dng";
+  kept.sha256 = "ab";
+  Photograph p = photograph(70);
+  p.sha256 = "ab";
+  const Result<void> twice = check_new(p, {kept}, "LED 1 (01_led01)");
+  ASSERT_FALSE(twice);
+  EXPECT_EQ(twice.error().kind, ErrorKind::kProtocol);
+  EXPECT_THAT(twice.error().message(), HasSubstr("LED 1 (01_led01): the file is that of raw/00_led00.dng"));
+  p.sha256 = "cd";
+  EXPECT_TRUE(check_new(p, {kept}, "LED 1 (01_led01)"));
+}
+
 }  // namespace
 }  // namespace weft::capture

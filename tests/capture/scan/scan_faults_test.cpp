@@ -59,6 +59,22 @@ TEST(ScanFaults, APhotographThatComesOneShotLateIsNeverTakenForTheNextOne) {
   }
 }
 
+TEST(ScanFaults, AFileThatComesTwiceIsTakenAgainWithoutAnyEvidenceByLight) {
+  for (const bool is_calibrated : {true, false}) {
+    for (int take = 2; take <= kShots; ++take) {
+      ScanBench bench;
+      bench.rig.camera_faults[take] = Fault::kTwice;
+      if (!is_calibrated) bench.request.calibration.clear();
+      const Result<ScanOutcome> outcome = bench.scan();
+      ASSERT_TRUE(outcome) << "at take " << take << ": " << outcome.error().message();
+      EXPECT_EQ(bench.objection(), "") << "at take " << take;
+      EXPECT_EQ(outcome->frames_retaken, 1) << "at take " << take;
+      ASSERT_EQ(bench.refused.size(), 1U) << "at take " << take;
+      EXPECT_THAT(bench.refused[0].why, testing::AllOf(HasSubstr("one photograph twice"), HasSubstr("raw/")));
+    }
+  }
+}
+
 TEST(ScanFaults, ALedThatGoesOutInOneExposureIsPhotographedAgain) {
   for (int take = 2; take < kShots; ++take) {  // the first and the last are dark shots
     ScanBench bench;
@@ -142,6 +158,18 @@ TEST(ScanFaults, AShotThatFailsThreeTimesEndsTheScan) {
   ScanBench bench;
   for (const int take : {4, 5, 6}) bench.rig.camera_faults[take] = Fault::kNoAnswer;
   expect_resumable(bench, ErrorKind::kTryAgain, "does not answer", [] {});
+}
+
+TEST(ScanFaults, AFileThatComesTwiceAgainEndsTheScanAndTheNextGoesOn) {
+  ScanBench bench;
+  bench.rig.camera_faults[5] = Fault::kTwice;
+  bench.rig.on_take = [&](int take) {
+    if (take > 5) bench.rig.camera_faults[take] = Fault::kTwice;
+  };
+  expect_resumable(bench, ErrorKind::kProtocol, "raw/03_led03.dng, byte for byte", [&] {
+    bench.rig.on_take = [](int) {};
+    bench.rig.camera_faults.clear();
+  });
 }
 
 TEST(ScanFaults, ADeadLedEndsTheScanByItsName) {

@@ -128,7 +128,9 @@ Result<Photograph> SimulatedRig::Camera::written(const fs::path& file, Fault fau
   const Lighting lighting = fault == Fault::kLedWentOut ? Lighting() : rig_.lighting();
   const RawFrame frame = rig_.cloth_.photograph(lighting, rig_.facts.exposure.exposure_us,
                                                 static_cast<std::uint32_t>(rig_.takes_));
-  if (Result<void> done = simulator::write_dng(photograph.file, frame); !done) return done.error();
+  simulator::DngTags tags;
+  tags.image_number = photograph.image_number;
+  if (Result<void> done = simulator::write_dng(photograph.file, frame, tags); !done) return done.error();
   photograph.bytes = fs::file_size(photograph.file);
   if (fault == Fault::kTruncated || fault == Fault::kFullDisk) {
     fs::resize_file(photograph.file, photograph.bytes / 2);
@@ -175,6 +177,12 @@ Result<Photograph> SimulatedRig::Camera::take(const fs::path& file, const std::f
     fs::remove(photograph->file);
     return device_error(ErrorKind::kTryAgain, "no photograph came");
   }
+  if (fault == Fault::kTwice) {
+    if (Result<void> done = write_file(photograph->file, last_bytes_); !done) return done.error();
+    photograph->sha256 = unwrapped(sha256_of_file(photograph->file));
+    photograph->image_number.reset();
+  }
+  last_bytes_ = unwrapped(read_text(photograph->file));
   if (late_) {  // the file of the shot before, under this one's name
     if (Result<void> done = write_file(photograph->file, late_bytes_); !done) return done.error();
     late_->file = photograph->file;

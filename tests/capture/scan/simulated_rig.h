@@ -33,6 +33,7 @@ class SimulatedRig {
     kNoAnswer,       ///< kTryAgain, and nothing was taken
     kLost,           ///< kTryAgain after the shutter: the photograph counts and is never seen
     kLate,           ///< the same, and the next shot delivers that photograph instead of its own
+    kTwice,          ///< the file of the shot before, in place of its own, and no count that tells
     kNonsense,       ///< kProtocol
     kUnplugged,      ///< kNoDevice, until recover() was asked for `absent` times
     kBattery,        ///< kBadData
@@ -91,7 +92,7 @@ class SimulatedRig {
     Result<capture::Photograph> written(const std::filesystem::path& file, SimulatedRig::Fault fault);
     SimulatedRig& rig_;
     std::optional<capture::Photograph> late_;
-    std::string late_bytes_;
+    std::string late_bytes_, last_bytes_;
   };
   Lighting lighting() const;
 
