@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 constexpr const char* kLock = "lock";
 // What a rig makes and takes away again.
 constexpr const char* kProfile = "camera.toml";
-constexpr std::array kMade = {"rig.toml", kProfile, "calibration", "environment", "home",   "targets",
-                              "board",    "modem",  "control",     "camera.sock", kFullDisk};
+constexpr std::array kMade = {"rig.toml", kProfile,      "calibration", "environment", "home",
+                              "targets",  "board",       "modem",       kBeside,       kBesideModem,
+                              "control",  "camera.sock", kFullDisk};
 
 constexpr const char* kD80 = R"toml(# A Nikon D80 that takes its pictures to its card.
 model = "D80"

@@ -24,6 +24,9 @@ struct RigFiles {
 
 /// Name of the file that VirtualRig keeps of its exposures.
 inline constexpr const char* kExposureLog = "exposures.jsonl";
+inline constexpr const char* kBeside =
+    "beside";  ///< the port of the other serial device, and its modem lines
+inline constexpr const char* kBesideModem = "beside_modem";
 inline constexpr const char* kFullDisk = "disk_full";  ///< there while a host's disk is full
 
 /// The folder of one living rig: locked while it lives, emptied of what it made at the end. What others

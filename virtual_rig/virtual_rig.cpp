@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "core/base/files.h"
+#include "virtual_rig/board/foreign_device.h"
 #include "virtual_rig/board/virtual_board.h"
 #include "virtual_rig/control_socket.h"
 #include "virtual_rig/light/exposed_frame.h"
@@ -140,6 +141,7 @@ class RunningRig : public VirtualRig {
   ~RunningRig() override {
     control_.reset();  // nobody commands what goes
     camera_.reset();
+    beside_.reset();
     board_.reset();
     for (const int fd : {end_, log_}) {
       if (fd >= 0) ::close(fd);
@@ -198,6 +200,11 @@ class RunningRig : public VirtualRig {
         {options_.firmware, in_folder("board"), in_folder("modem"), options_.bootloader_s}, pins_);
     if (!board) return board.error();
     board_ = std::move(*board);
+    if (options_.beside.empty()) return {};
+    auto beside =
+        ForeignDevice::start(in_folder(kBeside), in_folder(kBesideModem), talk_of_foreign(options_.beside));
+    if (!beside) return beside.error();
+    beside_ = std::move(*beside);
     return {};
   }
 
@@ -225,9 +232,10 @@ class RunningRig : public VirtualRig {
     for (const fs::path& library : options_.preloads) {
       preload += (preload.empty() ? "" : ":") + library.string();
     }
+    std::string modems = in_folder("modem").string();
+    if (beside_) modems += ":" + in_folder(kBesideModem).string();
     environment_ = {"HOME=" + in_folder("home").string(), "WEFT_FULL_DISK=" + in_folder(kFullDisk).string(),
-                    "WEFT_TERMINAL_MODEM=" + in_folder("modem").string(),
-                    "WEFT_RIG=" + in_folder("rig.toml").string()};
+                    "WEFT_TERMINAL_MODEM=" + modems, "WEFT_RIG=" + in_folder("rig.toml").string()};
     if (!preload.empty()) environment_.push_back("LD_PRELOAD=" + preload);
     if (options_.usb) environment_.push_back("WEFT_USB_CAMERAS=" + in_folder("camera.sock").string());
     RigFiles files;
@@ -423,6 +431,7 @@ class RunningRig : public VirtualRig {
   std::uint32_t looks_ = 0;  // of the camera's thread
   int end_ = -1, log_ = -1;
   std::unique_ptr<VirtualBoard> board_;
+  std::unique_ptr<ForeignDevice> beside_;
   std::unique_ptr<VirtualCamera> camera_;
   std::unique_ptr<ControlSocket> control_;
 };

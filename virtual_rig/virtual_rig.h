@@ -30,6 +30,7 @@ struct VirtualRigOptions {
   bool polariser = false;  ///< and films before LEDs and lens, which it turns
   /// Nobody has calibrated it: its calibration is what a data sheet and a tape say.
   bool bare = false;
+  std::string beside;      ///< another serial device of the host, one of foreign_kinds(); empty: none
   bool usb = false;        ///< the camera hangs on USB, by the stand-in for libusb; else PTP/IP
   double away_s = 2;       ///< how long what a fault takes away is away
   double late_s = 8;       ///< how late a picture is that comes late
@@ -48,6 +49,7 @@ struct VirtualRigOptions {
 ///   targets/       what is written about what can lie on its table: board.toml, sheet.toml ...
 ///   environment    NAME=value lines that a host needs to meet the rig
 ///   board, modem   the board's terminal and its modem lines
+///   beside         the port of the other serial device
 ///   camera.sock    the camera on USB
 ///   control        a socket for the commands below
 ///   exposures.jsonl  what each exposure was: number, time, LEDs; a line is there before its file is sent

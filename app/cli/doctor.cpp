@@ -31,7 +31,7 @@ std::vector<capture::SetupFinding> examine_devices(const capture::Rig& rig) {
   return capture::examine_rig(rig, {.board = [&]() -> Result<std::string> {
                                       const auto board = capture::open_board(rig);
                                       if (!board) return board.error();
-                                      return words_of((*board)->facts());
+                                      return words_of((*board)->facts(), rig.board.port);
                                     },
                                     .camera = [&]() -> Result<capture::CameraFacts> {
                                       auto opened = capture::open_camera(rig);

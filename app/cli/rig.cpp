@@ -70,6 +70,7 @@ Result<int> show_status(const capture::Rig& rig, const RigArguments&, const Comm
                 {"board",
                  {{"port", rig.board.port},
                   {"firmware", fmt::format("{}.{}", lamps.firmware_major, lamps.firmware_minor)},
+                  {"advice", capture::firmware_advice(lamps, rig.board.port)},
                   {"leds", lamps.leds},
                   {"began_from", capture::name_of(lamps.reset)}}},
                 {"camera",
@@ -83,7 +84,7 @@ Result<int> show_status(const capture::Rig& rig, const RigArguments&, const Comm
                   {"clock_offset_s", facts->clock_offset_s}}}});
     return kDone;
   }
-  print(fmt::format("board   {}: {}", rig.board.port, words_of(lamps)));
+  print(fmt::format("board   {}: {}", rig.board.port, words_of(lamps, rig.board.port)));
   print(fmt::format("camera  {} {} at {}, battery {:.0f} %, {:.6g} s, ISO {:g}, f/{:g}, clock {:+.1f} s",
                     facts->model, facts->serial, facts->port, 100 * facts->battery,
                     1e-6 * facts->exposure.exposure_us, facts->exposure.iso, facts->exposure.f_number,

@@ -62,7 +62,7 @@ Result<int> flash(const Flashing& a, const CommonArguments& common) {
                 {"firmware", fmt::format("{}.{}", facts.firmware_major, facts.firmware_minor)},
                 {"leds", facts.leds}});
   } else {
-    print(fmt::format("board   {}: {}", a.port, words_of(facts)));
+    print(fmt::format("board   {}: {}", a.port, words_of(facts, a.port)));
   }
   return kDone;
 }

@@ -58,7 +58,7 @@ std::string find_board(const NewRig& a, capture::Rig& rig) {
     rig.board.port = port;
     if (const auto board = capture::open_board(rig)) {
       rig.leds = (*board)->facts().leds;
-      return fmt::format("board at {}: {}", port, words_of((*board)->facts()));
+      return fmt::format("board at {}: {}", port, words_of((*board)->facts(), port));
     }
   }
   rig.board = {};

@@ -35,9 +35,10 @@ Result<ReachedRig> reach_rig(capture::Rig rig, const std::optional<std::string>&
   return ReachedRig{std::move(*server), std::move(*client)};
 }
 
-std::string words_of(const capture::BoardFacts& facts) {
-  return fmt::format("firmware {}.{}, {} LEDs, began from {}", facts.firmware_major, facts.firmware_minor,
-                     facts.leds, capture::name_of(facts.reset));
+std::string words_of(const capture::BoardFacts& facts, const std::string& port) {
+  const std::string advice = capture::firmware_advice(facts, port);
+  return fmt::format("firmware {}.{}, {} LEDs, began from {}{}{}", facts.firmware_major, facts.firmware_minor,
+                     facts.leds, capture::name_of(facts.reset), advice.empty() ? "" : "; ", advice);
 }
 
 }  // namespace weft::app

@@ -26,6 +26,6 @@ struct ReachedRig {
 Result<ReachedRig> reach_rig(capture::Rig rig, const std::optional<std::string>& owner);
 
 /// "firmware 1.0, 10 LEDs, began by power".
-std::string words_of(const capture::BoardFacts& facts);
+std::string words_of(const capture::BoardFacts& facts, const std::string& port);
 
 }  // namespace weft::app

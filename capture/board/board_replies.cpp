@@ -78,6 +78,14 @@ const char* name_of(WentDark cause) {
   return "before they were lit";
 }
 
+std::string firmware_advice(const BoardFacts& facts, const std::string& port) {
+  if (facts.protocol_minor >= kWeftProtocolMinor) return {};
+  return fmt::format(
+      "it speaks protocol {}.{}, this weft {}.{}: what came with that it lacks until it is flashed: "
+      "weft rig flash {}",
+      facts.protocol_major, facts.protocol_minor, int{kWeftProtocolMajor}, int{kWeftProtocolMinor}, port);
+}
+
 Result<BoardFacts> facts_in(const BoardReply& hello, const std::string& port) {
   if (hello.command != kWeftHello || hello.length < 2) return unlike_protocol(hello, port);
   if (auto usable = check_version(hello, port); !usable) return std::move(usable).error();

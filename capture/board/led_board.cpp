@@ -15,6 +15,7 @@
 
 #include "capture/board/board_replies.h"
 #include "capture/board/board_wire.h"
+#include "core/base/text.h"
 
 namespace weft::capture {
 namespace {
@@ -37,12 +38,18 @@ struct Connection {
   BoardFacts facts;
 };
 
+/// Where the board may be that does not answer at this port.
+Error with_other_ports(Error error, const std::vector<std::string>& ports) {
+  if (!ports.empty()) error.remedy += "; by their USB numbers LED boards may be at " + first_few(ports);
+  return error;
+}
+
 Result<std::unique_ptr<Connection>> connect(const std::string& name, double greeting_s) {
   auto port = SerialPort::open(name);
   if (!port) return std::move(port).error();
   auto connection = std::make_unique<Connection>(Connection{BoardWire(std::move(*port)), {}});
   const auto hello = connection->wire.greet(greeting_s);
-  if (!hello) return hello.error();
+  if (!hello) return with_other_ports(hello.error(), connection->wire.port().other_boards());
   auto facts = facts_in(*hello, name);
   if (!facts) return std::move(facts).error();
   connection->facts = std::move(*facts);

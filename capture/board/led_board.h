@@ -34,6 +34,10 @@ struct BoardFacts {
   std::string usb;                          ///< "2341:0043 5573"; empty where it is no USB device
 };
 
+/// What a person should do about a board at this port whose firmware is older than this weft's; empty:
+/// nothing.
+std::string firmware_advice(const BoardFacts& facts, const std::string& port);
+
 /// What it says at any moment.
 struct BoardStatus {
   std::vector<int> lit;

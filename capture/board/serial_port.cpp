@@ -14,6 +14,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <thread>
 
@@ -106,6 +107,16 @@ std::string usb_identity_of(const sp_port* port) {
   return usb.numbers.empty() ? "" : usb.numbers + " " + usb.serial;
 }
 
+std::vector<std::string> names_of(const std::function<bool(const sp_port*)>& is_meant) {
+  std::vector<std::string> names;
+  sp_port** ports = nullptr;
+  if (sp_list_ports(&ports) != SP_OK) return names;
+  for (sp_port** port = ports; *port != nullptr; ++port)
+    if (is_meant(*port)) names.emplace_back(sp_get_port_name(*port));
+  sp_free_port_list(ports);
+  return names;
+}
+
 unsigned int count_ms(std::chrono::milliseconds time) {
   return static_cast<unsigned int>(std::max<std::int64_t>(1, time.count()));  // 0 would be for ever
 }
@@ -187,14 +198,13 @@ UsbDevice SerialPort::usb() const {
 }
 
 std::vector<std::string> SerialPort::names_of_usb(const std::string& identity) {
-  std::vector<std::string> names;
-  sp_port** ports = nullptr;
-  if (sp_list_ports(&ports) != SP_OK) return names;
-  for (sp_port** port = ports; *port != nullptr; ++port) {
-    if (usb_identity_of(*port) == identity) names.emplace_back(sp_get_port_name(*port));
-  }
-  sp_free_port_list(ports);
-  return names;
+  return names_of([&](const sp_port* port) { return usb_identity_of(port) == identity; });
+}
+
+std::vector<std::string> SerialPort::other_boards() const {
+  const std::string own = sp_get_port_name(port_.get());
+  return names_of(
+      [&](const sp_port* port) { return own != sp_get_port_name(port) && may_be_led_board(usb_of(port)); });
 }
 
 Error SerialPort::gone() const {

@@ -41,6 +41,8 @@ class SerialPort {
   /// Which USB device it is, "2341:0043 5573"; empty where it is none.
   std::string usb_identity() const;
   UsbDevice usb() const;
+  /// What the kernel calls the other ports that LED boards may be at by their USB numbers; none is opened.
+  std::vector<std::string> other_boards() const;
 
  private:
   struct FreePort {

@@ -11,14 +11,18 @@
 // 115200 baud, 8 data bits, no parity, 1 stop bit. Numbers of two and four bytes begin with the low byte. The
 // CRC covers everything between the start byte and itself.
 
+// What a host and a board must share, and what came later: a test builds boards with others.
 #ifndef WEFT_PROTOCOL_MAJOR
-#define WEFT_PROTOCOL_MAJOR 1  // what a host and a board must share; a test builds boards with others
+#define WEFT_PROTOCOL_MAJOR 1
+#endif
+#ifndef WEFT_PROTOCOL_MINOR
+#define WEFT_PROTOCOL_MINOR 1
 #endif
 
 // One enumeration, for C++ dislikes arithmetic across two.
 enum {
   kWeftProtocolMajor = WEFT_PROTOCOL_MAJOR,
-  kWeftProtocolMinor = 1,
+  kWeftProtocolMinor = WEFT_PROTOCOL_MINOR,
   kWeftFirmwareMajor = 1,
   kWeftFirmwareMinor = 1,
 

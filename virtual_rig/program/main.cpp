@@ -16,6 +16,7 @@
 #include "app/cli/exit_code.h"
 #include "core/base/files.h"
 #include "simulator/scene/resolution.h"
+#include "virtual_rig/board/foreign_device.h"
 #include "virtual_rig/control_socket.h"
 #include "virtual_rig/program/background.h"
 #include "virtual_rig/program/run.h"
@@ -74,6 +75,9 @@ void define(CLI::App& app, Arguments& a) {
   app.add_flag("--below", a.rig.below, "a light below the cloth hangs on the board");
   app.add_flag("--polariser", a.rig.polariser,
                "films hang before LEDs and lens, which the board turns: crossed they take the gloss away");
+  app.add_option("--beside", a.rig.beside,
+                 "another serial device, at the port FOLDER/beside: how it talks [none]")
+      ->check(CLI::IsMember(foreign_kinds()));
   app.add_option("--cache", a.rig.cache, "folder of rendered light, shared by all rigs")
       ->capture_default_str();
   app.add_option("--threads", a.rig.render.tiles.threads, "threads [all the machine has]")

@@ -22,7 +22,7 @@ struct ModemLines {
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
-/// The environment variable that names the file to the shim.
+/// The environment variable that names the file to the shim, or several with a colon between two.
 inline constexpr const char* kModemVariable = "WEFT_TERMINAL_MODEM";
 
 using SharedModemLines = std::unique_ptr<ModemLines, void (*)(ModemLines*)>;

@@ -2,16 +2,18 @@
 // Modem lines for the pseudo-terminal of a virtual board, so that the unchanged libserialport opens it.
 // TIOCEXCL is noted and goes no further: the pseudo-terminal would stay closed to all after the host's death,
 // for its board has it open too. This is loaded before the C library (LD_PRELOAD=libweft_terminal_shim.so) or
-// linked into a program. It answers for the one terminal that the file named by WEFT_TERMINAL_MODEM names,
-// and for nothing else.
+// linked into a program. It answers for the terminals that the files of WEFT_TERMINAL_MODEM name, a colon
+// between two, and for nothing else.
 #include <dlfcn.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdarg>
 #include <cstdint>
 #include <cstdlib>
+#include <string_view>
 
 #include "virtual_rig/terminal/modem_lines.h"
 
@@ -26,12 +28,18 @@ bool is_modem_request(unsigned long request) {
 
 /// The lines of this terminal; null where it is no terminal of ours.
 SharedModemLines lines_of(int descriptor) {
-  const char* file = std::getenv(weft::virtual_rig::kModemVariable);
-  SharedModemLines lines = weft::virtual_rig::open_modem_lines(file ? file : "");
   struct stat facts {};
-  const bool ours = lines && fstat(descriptor, &facts) == 0 && S_ISCHR(facts.st_mode) &&
-                    lines->terminal.load() == facts.st_rdev;
-  if (!ours) lines.reset();
+  const bool is_terminal = fstat(descriptor, &facts) == 0 && S_ISCHR(facts.st_mode);
+  const char* const said = std::getenv(weft::virtual_rig::kModemVariable);
+  std::string_view files = is_terminal && said ? said : "";
+  SharedModemLines lines(nullptr, [](ModemLines*) {});
+  while (!files.empty()) {
+    const std::size_t end = std::min(files.find(':'), files.size());
+    lines = weft::virtual_rig::open_modem_lines(files.substr(0, end));
+    if (lines && lines->terminal.load() == facts.st_rdev) return lines;
+    files.remove_prefix(std::min(end + 1, files.size()));
+  }
+  lines.reset();
   return lines;
 }
 

@@ -4,17 +4,17 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
+#include <memory>
 #include <string>
-#include <thread>
+#include <utility>
 
 #include "capture/board/flashing.h"
 #include "capture/board/led_board.h"
 #include "capture/board/port_talk.h"
-#include "virtual_rig/board/virtual_board.h"
+#include "tests/capture/board/desk.h"
+#include "virtual_rig/board/foreign_device.h"
 #include "virtual_rig/terminal/modem_lines.h"
 #include "virtual_rig/terminal/port_name.h"
 #include "virtual_rig/terminal/usb_terminal.h"
@@ -26,30 +26,24 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A device that is no LED board, at a terminal of its own.
-class ForeignDevice {
+/// A device that is no LED board at the port that a host opens.
+class DeviceAtThePort {
  public:
-  /// `answer` is given what came; `own` is sent every 0.2 s. `usb`: it is the USB device of an Uno.
-  explicit ForeignDevice(std::function<std::string(const std::string&)> answer, std::string own = {},
-                         bool usb = false)
+  /// `usb`: it is the USB device of an Uno.
+  explicit DeviceAtThePort(virtual_rig::ForeignTalk talk, bool usb = false)
       : folder_(std::filesystem::path(testing::TempDir()) / ("foreign_" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
-    auto terminal = virtual_rig::PseudoTerminal::make(folder_ / "port");
-    auto lines = virtual_rig::make_modem_lines(folder_ / "modem");
-    EXPECT_TRUE(terminal && lines);
-    terminal_ = std::move(*terminal);
-    (*lines)->terminal = terminal_->device();
+    auto device = virtual_rig::ForeignDevice::start(folder_ / "port", folder_ / "modem", std::move(talk));
+    EXPECT_TRUE(device);
+    device_ = std::move(*device);
     setenv(virtual_rig::kModemVariable, (folder_ / "modem").c_str(), 1);
     if (usb) {
       usb_ = std::move(*virtual_rig::UsbTerminal::make(folder_, 0, "1", folder_ / "port"));
       setenv(virtual_rig::kMachineVariable, folder_.c_str(), 1);
     }
-    thread_ = std::jthread([this, answer = std::move(answer),
-                            own = std::move(own)](const std::stop_token& stop) { talk(stop, answer, own); });
   }
-  ~ForeignDevice() {
-    thread_.request_stop();
-    thread_.join();
+  ~DeviceAtThePort() {
+    device_.reset();
     unsetenv(virtual_rig::kModemVariable);
     unsetenv(virtual_rig::kMachineVariable);
     std::filesystem::remove_all(folder_);
@@ -61,33 +55,17 @@ class ForeignDevice {
   }
 
  private:
-  void talk(const std::stop_token& stop, const std::function<std::string(const std::string&)>& answer,
-            const std::string& own) const {
-    const auto send = [this](const std::string& text) {
-      terminal_->write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    };
-    auto next = std::chrono::steady_clock::now();
-    while (!stop.stop_requested()) {
-      std::array<std::uint8_t, 256> bytes = {};
-      const std::size_t count = terminal_->read(bytes);
-      if (count > 0 && answer)
-        send(answer({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count)}));
-      if (const auto now = std::chrono::steady_clock::now(); !own.empty() && now >= next) {
-        send(own);
-        next = now + std::chrono::milliseconds(200);
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-  }
-
   std::filesystem::path folder_;
-  std::unique_ptr<virtual_rig::PseudoTerminal> terminal_;
+  std::unique_ptr<virtual_rig::ForeignDevice> device_;
   std::unique_ptr<virtual_rig::UsbTerminal> usb_;
-  std::jthread thread_;
 };
 
+virtual_rig::ForeignTalk answering(const std::string& text) {
+  return {[text](const std::string&) { return text; }, ""};
+}
+
 std::string says(const std::string& text) {
-  return ForeignDevice([text](const std::string&) { return text; }).error().message();
+  return DeviceAtThePort(answering(text)).error().message();
 }
 
 TEST(ForeignDevice, IsNamedByWhatItAnswers) {
@@ -101,22 +79,21 @@ TEST(ForeignDevice, IsNamedByWhatItAnswers) {
 }
 
 TEST(ForeignDevice, IsToldFromWhatSpeaksOfItsOwnAccord) {
-  const ForeignDevice gps(nullptr, "$GPGGA,000000,0000.000,N*00\r\n");
+  const DeviceAtThePort gps({nullptr, "$GPGGA,000000,0000.000,N*00\r\n"});
   EXPECT_THAT(gps.error().message(),
               HasSubstr("a GPS receiver sends of its own accord: \"$GPGGA,000000,0000.000,N*00\""));
 }
 
 TEST(ForeignDevice, ThatEchoesIsCalledThatAndAModemBesides) {
-  const ForeignDevice echo([](const std::string& said) { return said; });
+  const DeviceAtThePort echo(virtual_rig::talk_of_foreign("echo"));
   EXPECT_THAT(echo.error().message(),
               HasSubstr("a device that echoes, or a cable's loop, answers: what it was sent"));
-  const ForeignDevice modem([](const std::string& said) { return said + "\r\nERROR\r\n"; });
+  const DeviceAtThePort modem(virtual_rig::talk_of_foreign("modem"));
   EXPECT_THAT(modem.error().message(), HasSubstr("a modem answers: \"ERROR\""));
 }
 
 TEST(ForeignDevice, ThatCannotBeReadMayBeOfAnotherSpeed) {
-  const Error error =
-      ForeignDevice([](const std::string&) { return std::string("\xE0\x1C\xFC\x00\x8F\x9E", 6); }).error();
+  const Error error = DeviceAtThePort(answering(std::string("\xE0\x1C\xFC\x00\x8F\x9E", 6))).error();
   EXPECT_EQ(error.kind, ErrorKind::kTryAgain) << "a board is asked again after noise on its line";
   EXPECT_THAT(error.message(), AllOf(HasSubstr("neither a reply nor text: E0 1C FC 00 8F 9E E0"),
                                      HasSubstr("another speed than 115200 baud"), Not(HasSubstr("silent"))));
@@ -128,7 +105,7 @@ TEST(ForeignDevice, ThatIsABootloaderIsCalledSo) {
 }
 
 TEST(ForeignDevice, IsNeverToBeFlashedThoughItIsAnUnoByItsUsbNumbers) {
-  const ForeignDevice printer([](const std::string&) { return "ok\r\n"; }, {}, true);
+  const DeviceAtThePort printer(answering("ok\r\n"), true);
   const Error error = printer.error();
   EXPECT_EQ(error.kind, ErrorKind::kBadData);
   EXPECT_THAT(error.message(), AllOf(HasSubstr("USB 2341:0043"), Not(HasSubstr("flash"))));
@@ -138,8 +115,24 @@ TEST(ForeignDevice, IsNeverToBeFlashedThoughItIsAnUnoByItsUsbNumbers) {
   EXPECT_THAT(may.error().remedy, HasSubstr("--any-board"));
 }
 
+TEST(DeviceAtThePort, IsToldWithThePortsWhereTheBoardMayBe) {
+  const test::Desk desk = test::Desk::with_usb();
+  const auto gps = virtual_rig::ForeignDevice::start(desk.folder() / "gps", desk.folder() / "gps_modem",
+                                                     virtual_rig::talk_of_foreign("gps"));
+  ASSERT_TRUE(gps);
+  setenv(virtual_rig::kModemVariable,
+         ((desk.folder() / "modem").string() + ":" + (desk.folder() / "gps_modem").string()).c_str(), 1);
+  const auto usb = virtual_rig::UsbTerminal::make(desk.folder(), 1, "9", desk.folder() / "gps");
+  ASSERT_TRUE(usb);
+  const auto other = LedBoard::open({"/dev/ttyACM1", 0.4});
+  ASSERT_FALSE(other);
+  EXPECT_THAT(other.error().message(), AllOf(HasSubstr("a GPS receiver sends of its own accord"),
+                                             HasSubstr("LED boards may be at /dev/ttyACM0")));
+  EXPECT_TRUE(LedBoard::open({"/dev/ttyACM0"})) << "where it is";
+}
+
 TEST(SilentPort, MayBeFlashedByItsUsbIdentityAlone) {
-  const ForeignDevice uno(nullptr, {}, true);
+  const DeviceAtThePort uno({}, true);
   EXPECT_TRUE(may_be_flashed(uno.port(), 0.2));
   for (const char* numbers : {"2341:0043", "2341:0001", "2341:0243", "2a03:0043", "1a86:7523", "0403:6001"}) {
     PortTalk silent;
@@ -154,7 +147,7 @@ TEST(SilentPort, MayBeFlashedByItsUsbIdentityAlone) {
 }
 
 TEST(SilentPort, OfNoUsbIdentityMayNotBeFlashed) {
-  const ForeignDevice nobody(nullptr);
+  const DeviceAtThePort nobody({});
   const auto may = may_be_flashed(nobody.port(), 0.2);
   ASSERT_FALSE(may);
   EXPECT_THAT(may.error().message(), HasSubstr("no Arduino Uno or Nano by its USB identity"));
