@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -16,11 +18,12 @@
 #include "core/base/files.h"
 #include "core/describe/field_check.h"
 #include "library/import/import_request.h"
+#include "library/import/oddities.h"
 
 namespace weft::app {
 namespace {
 
-constexpr std::size_t kMostLeftOver = 20;  // lines
+constexpr std::size_t kSessionsShown = 5;  // sessions of a state, each with its frames
 constexpr double kManyTimes = 999;
 
 std::string sure_words(const std::optional<double>& sure) {
@@ -74,27 +77,59 @@ void print_session(const library::ProposedSession& session) {
   if (session.state != library::ImportState::kThere) print_frames(session);
   if (!session.decision.light_says.empty() && session.state == library::ImportState::kNew)
     print("  " + session.decision.light_says);
-  for (const std::string& warning : session.warnings) print("  warning: " + warning);
+  for (const library::ImportDoubt& doubt : session.warnings) print("  warning: " + doubt.words);
 }
 
-void print_import(const library::ImportProposal& plan) {
-  for (const library::ProposedSession& session : plan.sessions) print_session(session);
-  for (const library::ProposedPhotographs& each : plan.photographs) {
-    const std::string name = each.session.folder.filename().string();
-    if (each.refusal) {
-      print(fmt::format("{}: refused. {}", name, each.refusal->message()));
-      continue;
-    }
-    print(fmt::format(
-        "{}: {} photographs of {}{}, \"{}\"", name, each.lights.lights.size(), each.source.string(),
-        each.state == library::ImportState::kThere ? ", is there already" : "", each.session.fabric));
-    for (const std::string& assumed : each.assumed) print("  " + assumed);
+void print_photographs(const library::ProposedPhotographs& each) {
+  const std::string name = each.session.folder.filename().string();
+  if (each.refusal) {
+    print(fmt::format("{}: refused. {}", name, each.refusal->message()));
+    return;
   }
-  const std::size_t shown = std::min(plan.left_over.size(), kMostLeftOver);
-  for (std::size_t i = 0; i < shown; ++i)
-    print(fmt::format("left over: {}: {}", plan.left_over[i].file.string(), plan.left_over[i].why));
-  if (plan.left_over.size() > shown)
-    print(fmt::format("left over: {} more, all in --json", plan.left_over.size() - shown));
+  print(fmt::format(
+      "{}: {} photographs of {}{}, \"{}\"", name, each.lights.lights.size(), each.source.string(),
+      each.state == library::ImportState::kThere ? ", is there already" : "", each.session.fabric));
+  for (const std::string& assumed : each.assumed) print("  " + assumed);
+}
+
+/// What is shown whole: the first of each state, and the first that is refused or doubted for a reason.
+class Shown {
+ public:
+  bool is_shown(const library::ProposedSession& session) {
+    bool shown = is_first(session.state, session.refusal);
+    for (const library::ImportDoubt& doubt : session.warnings) shown |= reasons_.insert(doubt.kind).second;
+    return count(shown);
+  }
+  bool is_shown(const library::ProposedPhotographs& each) {
+    return count(is_first(each.state, each.refusal));
+  }
+  std::size_t passed_over() const { return passed_over_; }
+
+ private:
+  bool is_first(library::ImportState state, const std::optional<Error>& refusal) {
+    return refusal ? reasons_.insert(refusal->what).second : ++states_[state] <= kSessionsShown;
+  }
+  bool count(bool shown) {
+    passed_over_ += shown ? 0 : 1;
+    return shown;
+  }
+
+  std::map<library::ImportState, std::size_t> states_;
+  std::set<std::string> reasons_;
+  std::size_t passed_over_ = 0;
+};
+
+void print_import(const library::ImportProposal& plan) {
+  Shown shown;
+  for (const library::ProposedSession& session : plan.sessions)
+    if (shown.is_shown(session)) print_session(session);
+  for (const library::ProposedPhotographs& each : plan.photographs)
+    if (shown.is_shown(each)) print_photographs(each);
+  if (shown.passed_over() > 0) print(fmt::format("{} more sessions, all in --json", shown.passed_over()));
+  for (const library::ImportOddity& oddity : library::oddities_of(plan)) {
+    const bool is_told = oddity.count == 1 && oddity.kind != library::OddityKind::kLeftOver;
+    if (!is_told) print(words_of(oddity));
+  }
   print(fmt::format("{} new, {} there already, {} refused", plan.count(library::ImportState::kNew),
                     plan.count(library::ImportState::kThere), plan.count(library::ImportState::kRefused)));
 }
@@ -105,7 +140,10 @@ int ending_of(const library::ImportProposal& plan) {
 }
 
 Result<void> ask(const library::ImportProposal& plan) {
-  note(fmt::format("import into {}? [y/N]", plan.archive.string()));
+  const std::size_t made = plan.count(library::ImportState::kNew),
+                    refused = plan.count(library::ImportState::kRefused);
+  note(fmt::format("import into {}: {} session{}{}? [y/N]", plan.archive.string(), made, made == 1 ? "" : "s",
+                   refused == 0 ? "" : fmt::format(", without the {} refused", refused)));
   const std::optional<std::string> answer = typed_line(stop_on_signal());
   if (answer && (*answer == "y" || *answer == "yes")) return {};
   if (stop_on_signal().stop_requested()) return interrupted();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -105,6 +106,18 @@ bool stands_before(std::string_view a, std::string_view b) {
   }
   if (left.empty() != right.empty()) return left.empty();
   return a < b;
+}
+
+std::string first_few(const std::vector<std::string>& names, std::size_t count) {
+  constexpr std::size_t kShown = 3;
+  count = std::max(count, names.size());
+  const std::size_t shown = std::min(names.size(), count == kShown + 1 ? count : kShown);
+  std::string words;
+  for (std::size_t i = 0; i < shown; ++i) {
+    if (i > 0) words += i + 1 == count ? " and " : ", ";
+    words += names[i];
+  }
+  return shown == count ? words : words + " and " + std::to_string(count - shown) + " more";
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {

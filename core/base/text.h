@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace weft {
 
@@ -17,6 +18,9 @@ std::string small_letters(std::string_view text);
 /// Whether one name stands before another as people count: "DSC_9" before "DSC_10", capitals as small
 /// letters. Names that differ in nothing but that keep the order of their bytes.
 bool stands_before(std::string_view a, std::string_view b);
+
+/// "a, b, c and 9 more", of so many names in all as there are or as `count` says.
+std::string first_few(const std::vector<std::string>& names, std::size_t count = 0);
 
 /// With a dash for each character that a file's name cannot hold everywhere: letters and digits of any script
 /// with their marks, '.', '_' and '-' stay; blanks, punctuation, symbols, control and format characters and

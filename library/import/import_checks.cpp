@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/files.h"
+#include "core/base/text.h"
 #include "core/rig/same_camera.h"
 #include "core/rig/suits.h"
 
@@ -17,28 +18,44 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How a frame differs from the first one; empty where it does not.
-std::string difference(const SourceFrame& frame, const SourceFrame& first) {
+/// How a frame differs from another: by what, and a sentence; empty where it does not.
+struct Difference {
+  std::string by, words;
+};
+
+Difference difference(const SourceFrame& frame, const SourceFrame& first) {
   const ShotMetadata &is = frame.shot, &was = first.shot;
-  if (frame.source.is_developed != first.source.is_developed) return "one is raw and the other developed";
+  if (frame.source.is_developed != first.source.is_developed)
+    return {"their kind", "one is raw and the other developed"};
   if (!is.model.empty() && !was.model.empty() && is.model != was.model)
-    return fmt::format("they are of a {} and a {}", was.model, is.model);
-  if (!same_serial(is.serial, was.serial))
-    return fmt::format("they are of the bodies with serial numbers {} and {}", was.serial, is.serial);
-  if (frame.size != first.size) {
-    return fmt::format("they have {} x {} and {} x {} pixels", first.size.width, first.size.height,
-                       frame.size.width, frame.size.height);
+    return {"their camera", fmt::format("they are of a {} and a {}", was.model, is.model)};
+  if (!same_serial(is.serial, was.serial)) {
+    return {"their body",
+            fmt::format("they are of the bodies with serial numbers {} and {}", was.serial, is.serial)};
   }
-  if (frame.cfa != first.cfa) return "their colour filters are laid out differently";
-  const std::array<std::tuple<const char*, double, double>, 4> settings = {
-      {{"exposure us", was.exposure_us, is.exposure_us},
-       {"ISO", was.iso, is.iso},
-       {"f/", was.f_number, is.f_number},
-       {"focal length mm", was.focal_mm, is.focal_mm}}};
-  for (const auto& [name, a, b] : settings)
+  if (frame.size != first.size) {
+    return {"their size", fmt::format("they have {} x {} and {} x {} pixels", first.size.width,
+                                      first.size.height, frame.size.width, frame.size.height)};
+  }
+  if (frame.cfa != first.cfa)
+    return {"their colour filters", "their colour filters are laid out differently"};
+  const std::array<std::tuple<const char*, const char*, double, double>, 4> settings = {
+      {{"their exposure", "exposure us", was.exposure_us, is.exposure_us},
+       {"their ISO value", "ISO", was.iso, is.iso},
+       {"their aperture", "f/", was.f_number, is.f_number},
+       {"their focal length", "focal length mm", was.focal_mm, is.focal_mm}}};
+  for (const auto& [by, name, a, b] : settings)
     if (a > 0 && b > 0 && !same_setting(a, b))
-      return fmt::format("they were taken at {} {:.6g} and {:.6g}", name, a, b);
-  return "";
+      return {by, fmt::format("they were taken at {} {:.6g} and {:.6g}", name, a, b)};
+  return {};
+}
+
+/// Those that differ from one.
+std::vector<const SourceFrame*> unlike(const std::vector<SourceFrame>& frames, const SourceFrame& one) {
+  std::vector<const SourceFrame*> others;
+  for (const SourceFrame& frame : frames)
+    if (!difference(frame, one).by.empty()) others.push_back(&frame);
+  return others;
 }
 
 Error unsaid(const SourceFrame& frame, const std::string& what, const std::string& key) {
@@ -58,14 +75,34 @@ Result<bool> is_same_file(const fs::path& stored, const std::string& sha256, con
 }  // namespace
 
 Result<void> check_alike(const std::vector<SourceFrame>& frames) {
-  for (const SourceFrame& frame : frames) {
-    const std::string why = difference(frame, frames.front());
-    if (why.empty()) continue;
-    return Error{ErrorKind::kBadData, "photographs are not of one session",
-                 fmt::format("{} and {}", frames.front().source.file.string(), frame.label), why,
-                 "put those of the other setting into a folder of their own, or aside"};
+  const SourceFrame* usual = &frames.front();
+  std::vector<const SourceFrame*> others = unlike(frames, *usual);
+  if (others.empty()) return {};
+  if (2 * others.size() > frames.size()) {
+    usual = others.front();
+    others = unlike(frames, *usual);
   }
-  return {};
+  const Difference first = difference(*others.front(), *usual);
+  std::vector<std::string> names;
+  for (const SourceFrame* frame : others) names.push_back(frame->label);
+  return Error{ErrorKind::kBadData, "photographs are not of one session, by " + first.by,
+               fmt::format("{} and {}", usual->source.file.string(), first_few(names)), first.words,
+               "put those of the other setting into a folder of their own, or aside"};
+}
+
+Result<void> check_readable(const std::vector<Error>& unreadable) {
+  if (unreadable.empty()) return {};
+  Error error = unreadable.front();
+  std::vector<std::string> more;
+  for (std::size_t i = 1; i < unreadable.size(); ++i) more.push_back(unreadable[i].where);
+  if (!more.empty()) error.why += fmt::format("; nor can {} be used", first_few(more));
+  return error;
+}
+
+bool hold_same_bytes(const fs::path& a, const fs::path& b) {
+  const Result<std::string> digest = sha256_of_file(a);
+  const Result<bool> same = digest ? is_same_file(b, *digest, a) : Result<bool>(digest.error());
+  return same && *same;
 }
 
 Result<CommonSetting> setting_of(const std::vector<SourceFrame>& frames, const ImportDescription& said,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "core/base/result.h"
@@ -14,8 +15,14 @@
 namespace weft::library {
 
 /// Whether frames are of one kind, body, size, exposure, ISO, aperture and focal length, as far as they say.
-/// kBadData names two that differ.
+/// kBadData names those that differ from most.
 Result<void> check_alike(const std::vector<SourceFrame>& frames);
+
+/// The first of these errors, which names the files of the others.
+Result<void> check_readable(const std::vector<Error>& unreadable);
+
+/// Whether both can be read and are alike to the last byte.
+bool hold_same_bytes(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// What all frames of a session were set to.
 struct CommonSetting {

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -11,8 +13,10 @@
 #include "core/base/files.h"
 #include "core/base/text.h"
 #include "core/describe/error_json.h"
+#include "library/import/capture_order.h"
 #include "library/import/description.h"
 #include "library/import/import_checks.h"
+#include "library/import/oddities.h"
 #include "library/import/photographs_import.h"
 #include "library/import/source_groups.h"
 
@@ -123,7 +127,8 @@ class SessionPlanner {
   Result<void> fill(ProposedSession& plan, SourceGroup group, const std::vector<fs::path>& descriptions,
                     bool is_numbered, double from, double to) {
     plan.frames = in_order(std::move(group.frames), options_.order);
-    if (!group.unreadable.empty()) return group.unreadable.front();
+    plan.warnings = std::move(group.doubts);
+    if (Result<void> ok = check_readable(group.unreadable); !ok) return ok;
     const Result<ImportDescription> said = described(descriptions);
     if (!said) return said.error();
     if (!said->fabric.empty()) plan.session.fabric = said->fabric;
@@ -166,13 +171,31 @@ class SessionPlanner {
       light[f] = std::move(*seen);
       return {};
     };
-    if (Result<void> ok = for_each_frame(plan.frames.size(), part, read_one); !ok) return ok;
+    // More frames than a session can have are refused unread.
+    const bool is_read = is_numbered || plan.frames.size() <= model->leds.size() + 1;
+    if (Result<void> ok = for_each_frame(is_read ? plan.frames.size() : 0, part, read_one); !ok) return ok;
     plan.decision = decide_leds(plan.frames, light, *model,
                                 {options_.order, is_numbered, options_.takes_missing, context_.stop});
     if (context_.stop.stop_requested()) return interrupted();
-    plan.warnings = plan.decision.warnings;
+    std::ranges::copy(plan.decision.warnings, std::back_inserter(plan.warnings));
     if (plan.decision.refusal) return *plan.decision.refusal;
+    if (!plan.decision.order.empty()) put_in_order(plan);
     return {};
+  }
+
+  /// Frames, and all that is decided of them, in the order that was decided.
+  static void put_in_order(ProposedSession& plan) {
+    LedDecision& decision = plan.decision;
+    const std::vector<std::size_t> order = std::exchange(decision.order, {});
+    const auto ordered = [&](auto& all) {
+      auto before = std::exchange(all, {});
+      for (const std::size_t f : order) all.push_back(std::move(before[f]));
+    };
+    ordered(plan.frames);
+    ordered(decision.leds);
+    ordered(decision.sure);
+    for (LedOpinion& opinion : decision.opinions) ordered(opinion.leds);
+    for (std::size_t f = 0; f < order.size(); ++f) plan.session.shots[f].time = time_words(plan.frames[f]);
   }
 
   static void put_leds(ProposedSession& plan) {
@@ -200,7 +223,7 @@ class SessionPlanner {
       if (!light->second.empty()) document["imported"]["second_misfit"] = light->second_misfit;
     }
     if (!said.metadata.empty()) document["metadata"] = said.metadata;
-    if (!plan.warnings.empty()) document["warnings"] = plan.warnings;
+    for (const ImportDoubt& doubt : plan.warnings) document["warnings"].push_back(doubt.words);
   }
 
   /// What lies where the session is to go.
@@ -219,7 +242,8 @@ class SessionPlanner {
     }
     plan.state = ImportState::kThere;
     if (stored->calibration_id != calibration_.id) {
-      plan.warnings.push_back("it was imported by another calibration: solve it with --calibration");
+      plan.warnings.push_back({"another calibration imported it",
+                               "it was imported by another calibration: solve it with --calibration"});
     }
     return {};
   }
@@ -255,22 +279,16 @@ Result<void> check_disks(const ImportProposal& plan) {
 
 /// One session a target: whoever comes second is refused.
 void refuse_twins(ImportProposal& plan) {
-  const auto refuse = [](ProposedSession& second, const fs::path& first) {
-    second.state = ImportState::kRefused;
-    second.refusal = Error{ErrorKind::kBadData, "two sessions would have one name", second.source.string(),
-                           fmt::format("{} has it too", first.string()),
-                           "rename one of the folders, or write {session} in --pattern"};
-  };
+  std::map<std::string, fs::path> sources;  // by target
+  for (const ProposedPhotographs& each : plan.photographs)
+    sources.emplace(each.session.folder.string(), each.source);
   for (ProposedSession& session : plan.sessions) {
-    for (const ProposedPhotographs& each : plan.photographs)
-      if (!session.refusal && session.session.folder == each.session.folder) refuse(session, each.source);
-  }
-  for (std::size_t i = 0; i < plan.sessions.size(); ++i) {
-    for (std::size_t j = i + 1; j < plan.sessions.size(); ++j) {
-      ProposedSession& second = plan.sessions[j];
-      if (second.refusal || second.session.folder != plan.sessions[i].session.folder) continue;
-      refuse(second, plan.sessions[i].source);
-    }
+    const auto [first, is_new] = sources.emplace(session.session.folder.string(), session.source);
+    if (is_new || session.refusal) continue;
+    session.state = ImportState::kRefused;
+    session.refusal = Error{ErrorKind::kBadData, "two sessions would have one name", session.source.string(),
+                            fmt::format("{} has it too", first->second.string()),
+                            "rename one of the folders, or write {session} in --pattern"};
   }
 }
 
@@ -382,10 +400,13 @@ Result<ImportProposal> plan_import(const ImportOptions& options, const JobContex
 Json json_of(const ImportProposal& plan) {
   const auto state_of = [](ImportState state) { return kImportStateNames[static_cast<std::size_t>(state)]; };
   const auto error_of = [](const std::optional<Error>& error) { return error ? json_of(*error) : Json(); };
-  Json sessions = Json::array(), photographs = Json::array(), left_over = Json::array();
+  Json sessions = Json::array(), photographs = Json::array(), left_over = Json::array(),
+       oddities = Json::array();
   for (const ProposedSession& session : plan.sessions) {
     Json frames = Json::array();
     for (std::size_t f = 0; f < session.frames.size(); ++f) frames.push_back(json_of_frame(session, f));
+    Json warnings = Json::array();
+    for (const ImportDoubt& doubt : session.warnings) warnings.push_back(doubt.words);
     sessions.push_back({{"session", session.session.folder.string()},
                         {"state", state_of(session.state)},
                         {"source", session.source.string()},
@@ -393,7 +414,7 @@ Json json_of(const ImportProposal& plan) {
                         {"by", session.decision.by},
                         {"light", session.decision.light_says},
                         {"frames", std::move(frames)},
-                        {"warnings", session.warnings},
+                        {"warnings", std::move(warnings)},
                         {"error", error_of(session.refusal)}});
   }
   for (const ProposedPhotographs& each : plan.photographs) {
@@ -407,9 +428,17 @@ Json json_of(const ImportProposal& plan) {
   }
   for (const LeftOver& file : plan.left_over)
     left_over.push_back({{"file", file.file.string()}, {"why", file.why}});
+  for (const ImportOddity& oddity : oddities_of(plan)) {
+    oddities.push_back({{"kind", kOddityNames[static_cast<std::size_t>(oddity.kind)]},
+                        {"what", oddity.what},
+                        {"count", oddity.count},
+                        {"first", oddity.first},
+                        {"says", words_of(oddity)}});
+  }
   return {{"archive", plan.archive.string()},      {"rig", plan.rig},
           {"calibration", plan.calibration_id},    {"sessions", std::move(sessions)},
-          {"photographs", std::move(photographs)}, {"left_over", std::move(left_over)}};
+          {"photographs", std::move(photographs)}, {"left_over", std::move(left_over)},
+          {"oddities", std::move(oddities)}};
 }
 
 }  // namespace weft::library

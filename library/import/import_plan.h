@@ -66,7 +66,7 @@ struct ProposedSession {
   Session session;               ///< as it will be written, but for digests; its folder is where
   std::vector<SourceFrame> frames;
   LedDecision decision;
-  std::vector<std::string> warnings;
+  std::vector<ImportDoubt> warnings;
   std::optional<Error> refusal;
 };
 
@@ -106,7 +106,7 @@ struct ImportProposal {
 /// another rig), kCannotCreate (hard links to another disk). Reports the phases "look" and "read".
 Result<ImportProposal> plan_import(const ImportOptions& options, const JobContext& context);
 
-/// {"archive", "calibration", "rig", "sessions", "photographs", "left_over"}.
+/// {"archive", "calibration", "rig", "sessions", "photographs", "left_over", "oddities"}.
 Json json_of(const ImportProposal& plan);
 
 }  // namespace weft::library

@@ -5,35 +5,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <numeric>
 #include <utility>
 
 #include "core/base/statistics.h"
 #include "core/base/text.h"
+#include "library/import/capture_order.h"
+#include "library/import/import_checks.h"
 
 namespace weft::library {
 namespace {
 
 constexpr double kDarkLevel = 0.1;  // of the median level: no LED lit, or one did not light
 constexpr double kAlike = 0.05;     // of a frame's level: two photographs under one light
+constexpr const char* kNotAsked = "the light was not asked: it takes five lit frames";
 
 using Indices = std::vector<std::size_t>;
-
-/// The number that a name ends with, "DSC_9999.NEF"; and how many of its digits can be counted to.
-struct Count {
-  std::size_t number = 0, end = 0;
-};
-Count count_of(const std::string& label) {
-  const std::string stem = std::filesystem::path(label).stem().string();
-  Count count = {0, 1};
-  for (auto digit = stem.rbegin();
-       digit != stem.rend() && *digit >= '0' && *digit <= '9' && count.end < 1'000'000; ++digit) {
-    count.number += static_cast<std::size_t>(*digit - '0') * count.end;
-    count.end *= 10;
-  }
-  return count;
-}
 
 /// Brings frames and LEDs together, step by step; a step that refuses ends it.
 class Decider {
@@ -65,8 +51,17 @@ class Decider {
   }
 
   bool refuse_more(std::size_t frames) {
-    return refuse("there are more frames than LEDs", fmt::format("{} frames, {} LEDs", frames, led_count()),
-                  "tell sessions apart by --gap SECONDS or {session} in --pattern");
+    std::vector<std::string> undated;
+    for (const SourceFrame& frame : frames_)
+      if (!frame.taken_s) undated.push_back(frame.label);
+    const bool is_some = !undated.empty() && undated.size() < frames_.size();
+    return refuse("there are more frames than LEDs",
+                  fmt::format("{} frames, {} LEDs{}", frames, led_count(),
+                              is_some ? fmt::format("; gaps tell nothing of {} without a time: {}",
+                                                    undated.size(), first_few(undated))
+                                      : ""),
+                  is_some ? "put those without a time aside, or say {session} in --pattern"
+                          : "tell sessions apart by --gap SECONDS or {session} in --pattern");
   }
 
   bool check_most() {
@@ -74,19 +69,28 @@ class Decider {
     return !is_too_many || refuse_more(frames_.size());
   }
 
-  /// Two photographs of one thing differ by their noise.
+  /// Two photographs of one thing differ by their noise; of nothing, by their headers.
   bool find_copies() {
     for (std::size_t a = 0; a < frames_.size(); ++a) {
+      const double level = level_of(light_[a]);
       for (std::size_t b = a + 1; b < frames_.size(); ++b) {
-        const double level = level_of(light_[a]);
-        if (level == 0 || level >= 1 || light_[a] != light_[b]) continue;
+        if (!are_equal(light_[a], light_[b])) continue;
+        const bool is_file_twice = hold_same_bytes(frames_[a].source.file, frames_[b].source.file);
+        if (!is_file_twice && (level == 0 || level >= 1)) continue;
         return refuse("two frames are one photograph",
-                      fmt::format("{} and {} hold the same counts{}", label(a), label(b),
+                      fmt::format("{} and {} {}{}", label(a), label(b),
+                                  is_file_twice ? "are one file, byte for byte" : "hold the same counts",
                                   is_any_dark() ? "" : ", and no frame is dark"),
                       "take the copy out, and look for the frame in whose place it is");
       }
     }
     return true;
+  }
+
+  /// With what is clipped.
+  static bool are_equal(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::ranges::equal(a, b,
+                              [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
   }
 
   std::vector<double> levels() const {
@@ -278,9 +282,9 @@ class Decider {
         decision_.opinions.push_back({"light, second", of_all(decision_.light->second)});
     }
     if (options_.order == FrameOrder::kLight) return take_light();
-    if (is_disputed_) return settle_dispute() || refuse_disputed();
+    if (is_disputed_) return settle_dispute() || follow_counter() || refuse_disputed();
     if (!decision_.light) {
-      decision_.light_says = "the light was not asked: it takes five lit frames";
+      decision_.light_says = kNotAsked;
       return true;
     }
     return compare_with_light(capture::misfit_under(of_lit(decision_.leds), light, model_));
@@ -304,7 +308,7 @@ class Decider {
     const auto first = std::ranges::find(by_time, by_name.front());
     const bool began_again = std::equal(first, by_time.end(), by_name.begin()) &&
                              std::equal(by_time.begin(), first, by_name.begin() + (by_time.end() - first));
-    const Count last = count_of(label(by_name.back())), next = count_of(label(by_name.front()));
+    const NameCount last = count_of(label(by_name.back())), next = count_of(label(by_name.front()));
     const bool at_its_end = last.end >= 1000 && last.end == next.end &&
                             last.number + frames_.size() > last.end && next.number <= frames_.size();
     if (!began_again || !at_its_end || !decision_.light || !decision_.light->is_alone() ||
@@ -313,10 +317,31 @@ class Decider {
     decision_.leds = times;
     decision_.by = "times";
     decision_.light_says = "the light agrees with times" + light_words();
-    decision_.warnings.push_back(
-        fmt::format("the camera's counter began again: {} follows {}, by time and light",
-                    label(by_name.front()), label(*std::prev(first))));
+    decision_.warnings.push_back({"the camera's counter began again",
+                                  fmt::format("the camera's counter began again: {} follows {}, by time and "
+                                              "light",
+                                              label(by_name.front()), label(*std::prev(first)))});
     take_sureness();
+    return true;
+  }
+
+  /// A camera counts on while its clock is set back; the light may object.
+  bool follow_counter() {
+    const std::optional<CountedOrder> by_count = counted_order(frames_);
+    if (!by_count || lit_.size() != model_.leds.size()) return false;
+    const std::vector<int> leds = counted(by_count->order);
+    const double misfit = decision_.light ? capture::misfit_under(of_lit(leds), lit_light(), model_) : 0;
+    const bool objects = decision_.light && of_lit(leds) != decision_.light->leds &&
+                         capture::is_far_better(decision_.light->misfit, misfit);
+    if (objects) return false;
+    decision_.leds = leds;
+    decision_.by = "names";
+    decision_.order = by_count->order;
+    decision_.warnings.push_back(
+        {"the camera's clock was set back",
+         words_of(by_count->steps.front(), frames_) + ": the order is that of names, which count on"});
+    if (decision_.light) return compare_with_light(misfit);
+    decision_.light_says = kNotAsked;
     return true;
   }
 
@@ -367,7 +392,7 @@ class Decider {
     decision_.light_says = fmt::format("the light objects: {} leave {:.4f} of it, another assignment {:.4f}",
                                        decision_.by, misfit, light.misfit);
     if (options_.order != FrameOrder::kAuto) {
-      decision_.warnings.push_back(decision_.light_says);
+      decision_.warnings.push_back({"the light objects", decision_.light_says});
       return true;
     }
     return refuse("the light of the frames says other LEDs than " + decision_.by,
@@ -378,11 +403,12 @@ class Decider {
   void warn() {
     for (const std::size_t f : unlit_) {
       if (f == dark_) continue;
-      decision_.warnings.push_back(
-          fmt::format("{} is dark: LED {} did not light", label(f), decision_.leds[f]));
+      decision_.warnings.push_back({"a LED did not light", fmt::format("{} is dark: LED {} did not light",
+                                                                       label(f), decision_.leds[f])});
     }
     if (lit_.size() < model_.leds.size())
-      decision_.warnings.push_back(fmt::format("{} of {} LEDs were lit", lit_.size(), led_count()));
+      decision_.warnings.push_back(
+          {"LEDs are missing", fmt::format("{} of {} LEDs were lit", lit_.size(), led_count())});
     if (decision_.by != "light" && decision_.opinions.size() > 1) {
       const bool agrees = std::ranges::all_of(
           decision_.opinions, [&](const LedOpinion& opinion) { return opinion.leds == decision_.leds; });
@@ -401,25 +427,6 @@ class Decider {
 };
 
 }  // namespace
-
-std::vector<std::size_t> order_of_names(const std::vector<SourceFrame>& frames) {
-  Indices order(frames.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
-    const auto &left = frames[a].said.index, &right = frames[b].said.index;
-    if (left && right && *left != *right) return *left < *right;
-    return stands_before(frames[a].label, frames[b].label);
-  });
-  return order;
-}
-
-std::optional<std::vector<std::size_t>> order_of_times(const std::vector<SourceFrame>& frames) {
-  if (!std::ranges::all_of(frames, [](const SourceFrame& f) { return f.taken_s.has_value(); })) return {};
-  Indices order = order_of_names(frames);
-  std::ranges::stable_sort(
-      order, [&](std::size_t a, std::size_t b) { return *frames[a].taken_s < *frames[b].taken_s; });
-  return order;
-}
 
 LedDecision decide_leds(const std::vector<SourceFrame>& frames, const std::vector<std::vector<double>>& light,
                         const capture::PatchLights& model, const DecisionOptions& options) {

@@ -19,7 +19,7 @@ namespace weft::library {
 
 /// What decides.
 enum class FrameOrder {
-  kAuto,   ///< numbers in names; else times and names, where they agree; the light may object
+  kAuto,   ///< numbers in names; else times and names, or a counter in names; the light may object
   kTime,   ///< the order of times
   kName,   ///< numbers in names, else the order of names
   kLight,  ///< which LED explains a frame
@@ -32,6 +32,12 @@ struct LedOpinion {
   std::vector<int> leds;
 };
 
+/// What a person should look at, of one session.
+struct ImportDoubt {
+  std::string kind;   ///< of all that are alike: "a LED did not light"
+  std::string words;  ///< of this session
+};
+
 struct LedDecision {
   std::vector<int> leds;  ///< by frame; empty where none was reached
   std::string by;         ///< "numbers in names", "times and names", "times", "names", "light"
@@ -41,7 +47,9 @@ struct LedDecision {
   std::vector<std::optional<double>> sure;
   std::string light_says;            ///< a sentence
   std::vector<LedOpinion> opinions;  ///< of all that were asked, where not all agree
-  std::vector<std::string> warnings;
+  /// Frames as they were captured, where that is neither the order of times nor was asked for; else empty.
+  std::vector<std::size_t> order;
+  std::vector<ImportDoubt> warnings;
   std::optional<Error> refusal;  ///< why there is no decision; `where` is empty
 };
 
@@ -57,10 +65,5 @@ struct DecisionOptions {
 /// is a `refusal` with the sentence for it.
 LedDecision decide_leds(const std::vector<SourceFrame>& frames, const std::vector<std::vector<double>>& light,
                         const capture::PatchLights& model, const DecisionOptions& options);
-
-/// The frames in order of their names or the numbers in them, and in order of time (equal times by name);
-/// nothing where one has no time.
-std::vector<std::size_t> order_of_names(const std::vector<SourceFrame>& frames);
-std::optional<std::vector<std::size_t>> order_of_times(const std::vector<SourceFrame>& frames);
 
 }  // namespace weft::library

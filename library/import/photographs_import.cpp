@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -171,12 +172,13 @@ std::vector<ProposedPhotographs> plan_photographs(const SourceFolders& found, co
   photos.reading = options.reading;
   photos.dark = options.dark;
   photos.skips_missing = options.takes_missing;
+  std::map<fs::path, int> lists_of_folder;
+  for (const fs::path& file : found.light_files) ++lists_of_folder[file.parent_path()];
   for (const fs::path& file : found.light_files) {
     // RTIBuilder keeps its light files in a folder of that name.
     const bool is_rtibuilder = file.parent_path().filename() == "assembly-files";
     const fs::path folder = is_rtibuilder ? file.parent_path().parent_path() : file.parent_path();
-    const bool is_alone =
-        std::ranges::count(found.light_files, file.parent_path(), &fs::path::parent_path) == 1;
+    const bool is_alone = lists_of_folder[file.parent_path()] == 1;
     std::string name = folder.filename().string();
     if (!is_alone) name += "_" + file.stem().string();
     photos.light_file = file;
@@ -242,13 +244,17 @@ void drop_used(const std::vector<ProposedPhotographs>& planned, SourceFolders& f
   }
   std::erase_if(found.frames, [&](const SourceFile& frame) { return used.contains(frame.file); });
   std::erase_if(found.left_over, [&](const LeftOver& left) { return used.contains(left.file); });
+  std::set<fs::path> refused;
+  for (const ProposedPhotographs& each : planned) {
+    std::error_code ignored;
+    if (each.refusal)
+      refused.insert(fs::is_directory(each.source, ignored) ? each.source : each.source.parent_path());
+  }
   const auto is_of_refused = [&](const fs::path& file) {
-    return std::ranges::any_of(planned, [&](const ProposedPhotographs& each) {
-      std::error_code ignored;
-      const bool is_folder = fs::is_directory(each.source, ignored);
-      const std::string folder = (is_folder ? each.source : each.source.parent_path()).string() + "/";
-      return each.refusal && file.string().starts_with(folder);
-    });
+    fs::path folder = file.parent_path();
+    for (; folder.has_relative_path(); folder = folder.parent_path())
+      if (refused.contains(folder)) return true;
+    return false;
   };
   for (const fs::path& file : found.beside_lights)
     if (!used.contains(file) && !is_of_refused(file))

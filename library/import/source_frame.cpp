@@ -67,6 +67,7 @@ Result<SourceFrame> look_at_frame(const SourceFile& source, const NameParts& sai
   const Result<capture::PhotographFacts> facts = capture::read_photograph_facts(source.file);
   if (!facts) return facts.error();
   frame.taken_s = facts->taken_s;
+  frame.image_number = facts->image_number;
   frame.knows_zone = facts->taken_s.has_value() && facts->zone_s.has_value();
   if (frame.knows_zone) *frame.taken_s -= *facts->zone_s;
   return frame;

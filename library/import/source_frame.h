@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -26,6 +27,7 @@ struct SourceFrame {
   /// true ones where the file names the zone.
   std::optional<double> taken_s;
   bool knows_zone = false;
+  std::optional<std::uint32_t> image_number;  ///< the body's count of shots
 };
 
 /// Opens a file and reads its header. Errors of reading a raw's header or an image's; kBadData for an image

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <tuple>
@@ -11,7 +12,7 @@
 
 #include "core/base/text.h"
 #include "library/catalogue/session_name.h"
-#include "library/import/led_decision.h"
+#include "library/import/capture_order.h"
 
 namespace weft::library {
 namespace {
@@ -77,11 +78,11 @@ std::vector<NamedGroup> group_by_name(const std::vector<SourceFile>& files,
 /// Names that are allowed, and each once: of two alike both are told apart by fabric, then by folder, then by
 /// a count.
 void name_apart(std::vector<NamedGroup>& groups) {
-  const auto is_twice = [&](const std::string& name) {
-    return std::ranges::count(groups, name, &NamedGroup::name) > 1;
-  };
   for (NamedGroup& group : groups) group.name = session_name_of(group.name);
   const auto tell_apart = [&](const auto& more_of) {
+    std::map<std::string, int> count;
+    for (const NamedGroup& group : groups) ++count[group.name];
+    const auto is_twice = [&](const std::string& name) { return count[name] > 1; };
     std::vector<std::string> names;
     for (const NamedGroup& group : groups) {
       const std::string more = more_of(group);
@@ -103,46 +104,97 @@ void name_apart(std::vector<NamedGroup>& groups) {
   }
 }
 
-/// Where a group ends and the next begins, as the first frames of each; frames are in order of time.
-std::vector<std::size_t> starts_by_gap(const std::vector<SourceFrame>& frames, double gap_s) {
-  std::vector<std::size_t> starts = {0};
-  for (std::size_t i = 1; i < frames.size(); ++i)
-    if (*frames[i].taken_s - *frames[i - 1].taken_s > gap_s) starts.push_back(i);
-  return starts;
+/// Frames in the order in which they are walked through, and where they are parted.
+struct Walked {
+  std::vector<SourceFrame> frames;
+  std::vector<std::size_t> starts;            ///< the first frame of each part, and the end of all
+  std::map<std::size_t, ImportDoubt> doubts;  ///< by the frame that they are of
+};
+
+std::vector<SourceFrame> in_this_order(std::vector<SourceFrame> frames,
+                                       const std::vector<std::size_t>& order) {
+  std::vector<SourceFrame> ordered;
+  ordered.reserve(frames.size());
+  for (const std::size_t f : order) ordered.push_back(std::move(frames[f]));
+  return ordered;
+}
+
+/// Parted where time has a gap or runs back.
+Walked parted(std::vector<SourceFrame> frames, double gap_s) {
+  Walked walked = {std::move(frames), {0}, {}};
+  std::optional<std::size_t> last;
+  for (std::size_t i = 0; i < walked.frames.size(); ++i) {
+    const SourceFrame& frame = walked.frames[i];
+    if (!frame.taken_s) continue;
+    const double after_s = last ? *frame.taken_s - *walked.frames[*last].taken_s : 0;
+    if (after_s > gap_s || after_s < 0) walked.starts.push_back(i);
+    if (after_s < 0) {
+      walked.doubts.emplace(i, ImportDoubt{"the camera's clock was set back before the session",
+                                           words_of(ClockStep{*last, i, -after_s}, walked.frames) +
+                                               ", while its counter went on"});
+    }
+    last = i;
+  }
+  walked.starts.push_back(walked.frames.size());
+  return walked;
+}
+
+/// Puts together what a clock that was set parted in the midst of a session, where the counter went on.
+void join_by_count(std::size_t leds, double gap_s, Walked& walked) {
+  std::vector<std::size_t>& starts = walked.starts;
+  for (std::size_t s = 0; s + 2 < starts.size(); ++s) {
+    const std::size_t a = starts[s + 1] - starts[s], b = starts[s + 2] - starts[s + 1];
+    const bool is_whole = a + b == leds || a + b == leds + 1;
+    if (!is_whole || (a >= leds && b >= leds)) continue;
+    const std::size_t after = starts[s + 1];
+    starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(s) + 1);
+    if (walked.doubts.erase(after) > 0) continue;  // its times and names disagree: that is told of it
+    walked.doubts.emplace(
+        after,
+        ImportDoubt{"the camera's clock was set in its midst",
+                    fmt::format("between {} and {} lie over {:g} s, and the camera counted on: one session",
+                                walked.frames[after - 1].label, walked.frames[after].label, gap_s)});
+  }
+}
+
+/// A file that cannot be opened belongs where the one before it by name does.
+void hand_out(std::vector<Error> unreadable, std::vector<SourceGroup>& parts) {
+  std::vector<std::pair<std::string, SourceGroup*>> owners;
+  for (SourceGroup& part : parts)
+    for (const SourceFrame& frame : part.frames) owners.emplace_back(frame.source.file.string(), &part);
+  const auto by_name = [](const std::string& a, const std::string& b) { return stands_before(a, b); };
+  std::ranges::sort(owners, by_name, [](const auto& owner) { return owner.first; });
+  for (Error& error : unreadable) {
+    const auto next =
+        std::ranges::lower_bound(owners, error.where, by_name, [](const auto& owner) { return owner.first; });
+    SourceGroup& owner = next == owners.begin() ? parts.front() : *std::prev(next)->second;
+    owner.unreadable.push_back(std::move(error));
+  }
 }
 
 /// A group whose files have been opened, split where time has gaps.
 std::vector<SourceGroup> split_by_time(SourceGroup whole, const GroupingOptions& options) {
   const bool has_sessions = options.pattern && options.pattern->has("session");
   const std::size_t files = whole.frames.size() + whole.unreadable.size();
-  const auto order = order_of_times(whole.frames);
-  if (has_sessions || !order || whole.frames.empty() || files <= options.leds + 1) return {std::move(whole)};
-  std::vector<SourceFrame> frames;
-  for (const std::size_t f : *order) frames.push_back(std::move(whole.frames[f]));
-  const std::vector<std::size_t> starts = starts_by_gap(frames, options.gap_s);
+  if (has_sessions || whole.frames.empty() || files <= options.leds + 1) return {std::move(whole)};
+  const std::optional<CountedOrder> counted = counted_order(whole.frames);
+  const std::optional<std::vector<std::size_t>> timed = order_of_times(whole.frames);
+  if (!counted && !timed) return {std::move(whole)};
+  Walked walked =
+      parted(in_this_order(std::move(whole.frames), counted ? counted->order : *timed), options.gap_s);
+  if (counted) join_by_count(options.leds, options.gap_s, walked);
   std::vector<SourceGroup> parts;
-  for (std::size_t s = 0; s < starts.size(); ++s) {
-    const std::size_t end = s + 1 < starts.size() ? starts[s + 1] : frames.size();
+  for (std::size_t s = 0; s + 1 < walked.starts.size(); ++s) {
     SourceGroup& part =
-        parts.emplace_back(SourceGroup{whole.name, whole.fabric, whole.root, whole.folder, {}, {}});
-    if (starts.size() > 1) part.name += fmt::format("_{:02}", s + 1);
-    for (std::size_t f = starts[s]; f < end; ++f) part.frames.push_back(std::move(frames[f]));
-  }
-  // A file that cannot be opened belongs where the one before it by name does.
-  for (Error& error : whole.unreadable) {
-    SourceGroup* owner = &parts.front();
-    const SourceFrame* nearest = nullptr;
-    for (SourceGroup& part : parts) {
-      for (const SourceFrame& frame : part.frames) {
-        const std::string name = frame.source.file.string();
-        if (!stands_before(name, error.where)) continue;
-        if (nearest != nullptr && !stands_before(nearest->source.file.string(), name)) continue;
-        nearest = &frame;
-        owner = &part;
-      }
+        parts.emplace_back(SourceGroup{whole.name, whole.fabric, whole.root, whole.folder, {}, {}, {}});
+    if (walked.starts.size() > 2) part.name += fmt::format("_{:02}", s + 1);
+    for (std::size_t f = walked.starts[s]; f < walked.starts[s + 1]; ++f) {
+      if (const auto doubt = walked.doubts.find(f); doubt != walked.doubts.end())
+        part.doubts.push_back(doubt->second);
+      part.frames.push_back(std::move(walked.frames[f]));
     }
-    owner->unreadable.push_back(std::move(error));
   }
+  if (!whole.unreadable.empty()) hand_out(std::move(whole.unreadable), parts);
   return parts;
 }
 
@@ -168,7 +220,7 @@ Result<std::vector<SourceGroup>> group_frames(const std::vector<SourceFile>& fil
 
   std::vector<SourceGroup> opened;
   for (NamedGroup& group : named)
-    opened.push_back({std::move(group.name), std::move(group.fabric), group.root, group.folder, {}, {}});
+    opened.push_back({std::move(group.name), std::move(group.fabric), group.root, group.folder, {}, {}, {}});
   for (std::size_t i = 0; i < places.size(); ++i) {
     SourceGroup& group = opened[places[i].first];
     if (*looked[i]) {

@@ -9,6 +9,7 @@
 
 #include "core/base/job_context.h"
 #include "core/base/result.h"
+#include "library/import/led_decision.h"
 #include "library/import/name_pattern.h"
 #include "library/import/source_folders.h"
 #include "library/import/source_frame.h"
@@ -25,6 +26,7 @@ struct SourceGroup {
   std::filesystem::path folder;  ///< that its frames lie in
   std::vector<SourceFrame> frames;
   std::vector<Error> unreadable;  ///< of files that belong to it and cannot be opened
+  std::vector<ImportDoubt> doubts;
 };
 
 struct GroupingOptions {
@@ -34,8 +36,9 @@ struct GroupingOptions {
 };
 
 /// Opens the files and groups them: by {session} of the pattern, else by folder (and {fabric}), and a folder
-/// of more frames than a session has at gaps of time, where all its files have times. Files that do not
-/// follow the pattern go to `left_over`. Reports the phase "look". Errors: the caller's stop token.
+/// of more frames than a session has at gaps of time: in the order of names that count on, where a gap in
+/// the midst of a session is the clock's, else in that of times, where all files have some. Files that do
+/// not follow the pattern go to `left_over`. Reports the phase "look". Errors: the caller's stop token.
 Result<std::vector<SourceGroup>> group_frames(const std::vector<SourceFile>& files,
                                               const GroupingOptions& options, const JobContext& context,
                                               std::vector<LeftOver>& left_over);

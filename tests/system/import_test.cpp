@@ -1,26 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Folders that other rigs left, as a person imports them.
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "capture/raw/decode_raw.h"
 #include "core/base/files.h"
 #include "core/rig/calibration.h"
 #include "core/rig/session.h"
-#include "simulator/camera/dng_writer.h"
 #include "tests/core/places.h"
+#include "tests/system/import_bench.h"
 #include "tests/system/samples.h"
-#include "tests/system/workspace.h"
 
 namespace weft::test {
 namespace {
@@ -28,150 +22,12 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::Not;
 
-constexpr int kLeds = 10;
-constexpr double kMidnight = 3600.0 * 23;
-
-// A coarse weave, large enough for its light to fall off over the frame as on a real table.
-simulator::Scene coarse_scene(Size size = {264, 176}) {
-  simulator::Scene scene = scene_named("golden", size);
-  scene.camera.mm_per_pixel = 211.0 / size.width;
-  scene.geometry.warp_pitch_mm = scene.geometry.weft_pitch_mm = 12;
-  return scene;
-}
-
-/// One simulated session, whose frames the tests write under other names and times.
-struct Scanned {
-  Scanned() {
-    folder = fs::path(testing::TempDir()) / fmt::format("weft_import_{}.weft", getpid());
-    fs::remove_all(folder);
-    simulate(coarse_scene(), folder);
-    const Result<Session> session = read_session(folder);
-    EXPECT_TRUE(session) << session.error().message();
-    for (const Shot& shot : session->shots) {
-      Result<RawFrame> frame = capture::decode_raw(session->path_of(shot));
-      EXPECT_TRUE(frame) << frame.error().message();
-      if (shot.role != ShotRole::kRepeat) frames.emplace(shot.led, std::move(*frame));
-    }
-  }
-  ~Scanned() { fs::remove_all(folder); }
-
-  fs::path folder;
-  std::map<int, RawFrame> frames;  // by LED; 0 the dark one
-};
-
 std::string without(std::string text, const std::string& part) {
   for (std::size_t at = 0; (at = text.find(part, at)) != text.npos;) text.erase(at, part.size());
   return text;
 }
 
-class Import : public testing::Test {
- protected:
-  static void SetUpTestSuite() { scanned_ = new Scanned; }
-  static void TearDownTestSuite() {
-    delete scanned_;
-    scanned_ = nullptr;
-  }
-
-  /// Writes the frame of a LED; without `second` the file names no time.
-  void put(const std::string& name, int led, std::optional<double> second = {},
-           const std::function<void(RawFrame&)>& change = {}) const {
-    const RawFrame& is = scanned_->frames.at(led);
-    RawFrame frame = {copy(is.counts), is.cfa, is.black, is.white, is.shot};
-    if (change) change(frame);
-    simulator::DngTags tags;
-    if (second) {
-      const int whole = static_cast<int>(kMidnight + *second);
-      tags.date_time_original = fmt::format("2026:01:{:02} {:02}:{:02}:{:02}", 30 + whole / 86400,
-                                            whole / 3600 % 24, whole / 60 % 60, whole % 60);
-    }
-    fs::create_directories((source_ / name).parent_path());
-    const Result<void> written = simulator::write_dng(source_ / name, frame, tags);
-    ASSERT_TRUE(written) << written.error().message();
-  }
-  static Image<std::uint16_t> copy(const Image<std::uint16_t>& from) {
-    Image<std::uint16_t> to(from.size());
-    for (int y = 0; y < from.height(); ++y) std::copy_n(from.plane().row(y), from.width(), to.plane().row(y));
-    return to;
-  }
-  /// Frames of all LEDs in this order of names, `step` seconds apart; 0 is the dark one.
-  void put_all(const std::string& names, const std::vector<int>& leds, double step = 2,
-               double from = 0) const {
-    for (std::size_t i = 0; i < leds.size(); ++i)
-      put(fmt::format(fmt::runtime(names), i + 8), leds[i], from + step * static_cast<double>(i));
-  }
-  void put_by_number(const std::string& folder, const std::vector<int>& leds) const {
-    for (const int led : leds) put(fmt::format("{}/satin_{:02}.DNG", folder, led), led);
-  }
-  static std::vector<int> all_leds(bool with_dark = true) {
-    std::vector<int> leds;
-    for (int led = with_dark ? 0 : 1; led <= kLeds; ++led) leds.push_back(led);
-    return leds;
-  }
-
-  std::vector<std::string> words(const std::vector<std::string>& more) const {
-    std::vector<std::string> words = {
-        "import", source_.string(), "--calibration", calibration_.string(), "-o", archive_.string(), "-q"};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  }
-  Outcome import(std::vector<std::string> more = {}) const {
-    more.insert(more.end(), {"--yes", "--json"});
-    return run_weft(words(more));
-  }
-  Json imported(const std::vector<std::string>& more = {}) const {
-    const Outcome run = import(more);
-    EXPECT_EQ(run.exit_code, 0) << run.error << run.output;
-    return run.json();
-  }
-  static void expect_sure(const Json& plan) {
-    for (const Json& f : plan["sessions"][0]["frames"]) EXPECT_TRUE(f["led"] == 0 || f["sure"] > 1.6) << f;
-  }
-  /// Imports and expects one refused session, whose error has these words.
-  Json refused(const std::vector<std::string>& more, const std::vector<std::string>& words) const {
-    const Outcome run = import(more);
-    EXPECT_EQ(run.exit_code, 65) << run.error << run.output;
-    Json plan = run.json();
-    EXPECT_EQ(plan["sessions"].size(), 1U);
-    EXPECT_EQ(plan["sessions"][0]["state"], "refused");
-    for (const std::string& word : words) EXPECT_THAT(plan["sessions"][0]["error"].dump(), HasSubstr(word));
-    EXPECT_FALSE(fs::exists(archive_)) << "nothing is made";
-    return plan;
-  }
-  /// What programs that are run from now on read.
-  void type(const std::string& text) const {
-    put_bytes(work_ / "typed", text);
-    const int file = ::open((work_ / "typed").c_str(), O_RDONLY | O_CLOEXEC);
-    ASSERT_GE(file, 0);
-    ASSERT_EQ(::dup2(file, STDIN_FILENO), STDIN_FILENO);
-    ::close(file);
-  }
-  Session session(const std::string& name) const {
-    Result<Session> session = read_session(archive_ / (name + ".weft"));
-    EXPECT_TRUE(session) << session.error().message();
-    return session ? std::move(*session) : Session();
-  }
-  static Session session_of_scan() { return *read_session(scanned_->folder); }
-  /// Whether each shot holds the frame of the LED that it names.
-  void expect_right(const Session& session) const {
-    for (const Shot& shot : session.shots) {
-      const Result<RawFrame> frame = capture::decode_raw(session.path_of(shot));
-      ASSERT_TRUE(frame) << frame.error().message();
-      const RawFrame& wanted = scanned_->frames.at(shot.led);
-      for (int y = 0; y < wanted.counts.height(); ++y) {
-        const auto* row = wanted.counts.plane().row(y);
-        ASSERT_TRUE(std::equal(row, row + wanted.counts.width(), frame->counts.plane().row(y)))
-            << shot.file << " is not of LED " << shot.led;
-      }
-      EXPECT_EQ(shot.role, shot.led == 0 ? ShotRole::kDark : ShotRole::kLit);
-    }
-  }
-
-  static inline Scanned* scanned_ = nullptr;
-  Workspace work_;
-  const fs::path source_ = work_ / "left", archive_ = work_ / "archive";
-  fs::path calibration_ = scanned_->folder / "calibration";
-  const std::vector<std::string> by_number_ = {"--pattern", "{session}/{fabric}_{led}.{ext}"};
-};
+using Import = ImportBench;
 
 TEST_F(Import, MakesASessionOfNumbersInNamesThatIsSolvedAsIfScanned) {
   put_by_number("tray 7", all_leds());
@@ -211,7 +67,8 @@ TEST_F(Import, CountsNamesAsPeopleDoAndFindsTheDarkFrameByItsLevel) {
 }
 
 TEST_F(Import, RefusesNamesAgainstTimesUntilOneOfThemIsChosen) {
-  for (int led = 1; led <= kLeds; ++led) put(fmt::format("DSC_{:04}.dng", (led + 4) % kLeds), led, 3 * led);
+  for (int led = 1; led <= kImportLeds; ++led)
+    put(fmt::format("DSC_{:04}.dng", (led + 4) % kImportLeds), led, 3 * led);
   const Json plan = refused({}, {"times and names do not agree", "--order time"});
   const Json& opinions = plan["sessions"][0]["frames"][0]["opinions"];
   EXPECT_EQ(opinions["time"], 1);
@@ -226,14 +83,14 @@ TEST_F(Import, RefusesNamesAgainstTimesUntilOneOfThemIsChosen) {
 }
 
 TEST_F(Import, FollowsTimesWhereTheCameraBeganToCountAgainAndTheLightAgrees) {
-  for (int led = 0; led <= kLeds; ++led)
+  for (int led = 0; led <= kImportLeds; ++led)
     put(fmt::format("D{:04}.DNG", (led + 9995) % 9999 + 1), led, 2 * led);
   EXPECT_THAT(imported({})["sessions"][0]["warnings"].dump(), HasSubstr("D0001.DNG follows D9999.DNG"));
   expect_right(session("left"));
 }
 
 TEST_F(Import, NamesTwoFramesThatAreOnePhotographAndThatNoneIsDark) {
-  for (int led = 0; led <= kLeds; ++led) put(fmt::format("{:02}.DNG", led), led == 0 ? 5 : led, led);
+  for (int led = 0; led <= kImportLeds; ++led) put(fmt::format("{:02}.DNG", led), led == 0 ? 5 : led, led);
   refused({}, {"two frames are one photograph", "00.DNG and 05.DNG", "no frame is dark"});
   put("00.DNG", 5, 0, [](RawFrame& frame) { frame.black[0][0] += 3; });
   refused({}, {"no frame is dark", "00.DNG and 05.DNG are of one light"});
@@ -264,7 +121,7 @@ TEST_F(Import, RefusesTwoFramesOfOneLedAndLedsCountedFromZero) {
   put("tray/satin_3.DNG", 3);
   refused(by_number_, {"two frames are of LED 3", "satin_03.DNG", "satin_3.DNG"});
   fs::remove_all(source_ / "tray");
-  for (int led = 1; led <= kLeds; ++led) put(fmt::format("tray/satin_{}.DNG", led - 1), led);
+  for (int led = 1; led <= kImportLeds; ++led) put(fmt::format("tray/satin_{}.DNG", led - 1), led);
   refused(by_number_, {"satin_0.DNG says LED 0", "{index}"});
   imported({"--pattern", "{session}/{fabric}_{index}.{ext}"});
   expect_right(session("tray"));

@@ -65,5 +65,13 @@ TEST(StandsBefore, OrdersStrictly) {
   }
 }
 
+TEST(FirstFew, NamesThreeOfManyAndAllOfFour) {
+  EXPECT_EQ(first_few({"a"}), "a");
+  EXPECT_EQ(first_few({"a", "b"}), "a and b");
+  EXPECT_EQ(first_few({"a", "b", "c", "d"}), "a, b, c and d");
+  EXPECT_EQ(first_few({"a", "b", "c", "d", "e"}), "a, b, c and 2 more");
+  EXPECT_EQ(first_few({"a", "b", "c", "d"}, 100), "a, b, c and 97 more");
+}
+
 }  // namespace
 }  // namespace weft
