@@ -5,12 +5,13 @@ import {formOf} from '../../state/forms';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
-import {fieldsOf, listIn, textIn, textsIn} from '../../ui/fields';
+import {fieldsOf, textIn, textsIn} from '../../ui/fields';
 import type {Wish} from '../../ui/request_schema';
 import {SchemaForm} from '../../ui/schema_form';
 import {jobs, queueJob, useJobs} from '../jobs/jobs';
 import {errorOf} from '../jobs/price';
 import {JobLine} from '../material/job_line';
+import {importedOf} from './imported';
 
 const asked = ['folders', 'ball', 'ball_mm', 'mm_per_pixel', 'flip', 'transfer'];
 
@@ -31,8 +32,19 @@ export function Photographs({onMade}: {onMade: () => void}) {
       <Button kind="main" isDisabled={bring.isBusy || !wish['folders']} onClick={() => void bring.run()}>Import</Button>
       <Complaint error={bring.complaint} />
       {job && <JobLine job={job} />}
-      {[...listIn(job?.result, 'photographs'), ...listIn(job?.result, 'sessions')].map((made) => <Made key={textIn(made, 'session')} made={made} />)}
+      {job?.result && <Outcome result={job.result} />}
     </details>
+  );
+}
+
+function Outcome({result}: {result: unknown}) {
+  const {shown, more, sentences} = importedOf(result);
+  return (
+    <>
+      {shown.map((made) => <Made key={textIn(made, 'session')} made={made} />)}
+      {more > 0 && <p>{more} more sessions</p>}
+      {sentences.map((sentence) => <p key={sentence} class="dim">{sentence}</p>)}
+    </>
   );
 }
 
