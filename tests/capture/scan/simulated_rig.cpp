@@ -180,7 +180,6 @@ Result<Photograph> SimulatedRig::Camera::take(const fs::path& file, const std::f
   if (fault == Fault::kTwice) {
     if (Result<void> done = write_file(photograph->file, last_bytes_); !done) return done.error();
     photograph->sha256 = unwrapped(sha256_of_file(photograph->file));
-    photograph->image_number.reset();
   }
   last_bytes_ = unwrapped(read_text(photograph->file));
   if (late_) {  // the file of the shot before, under this one's name

@@ -33,7 +33,7 @@ class SimulatedRig {
     kNoAnswer,       ///< kTryAgain, and nothing was taken
     kLost,           ///< kTryAgain after the shutter: the photograph counts and is never seen
     kLate,           ///< the same, and the next shot delivers that photograph instead of its own
-    kTwice,          ///< the file of the shot before, in place of its own, and no count that tells
+    kTwice,          ///< the file of the shot before in place of its own, though the camera counted on
     kNonsense,       ///< kProtocol
     kUnplugged,      ///< kNoDevice, until recover() was asked for `absent` times
     kBattery,        ///< kBadData
