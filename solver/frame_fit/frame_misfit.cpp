@@ -20,6 +20,9 @@ constexpr int kAcross = 16, kDown = 12;  // blocks of the frame
 constexpr double kPartFrom = 0.15;       // of the brightness: a block that is missed by it does not fit
 constexpr double kPartTimes = 6;         // and by so many times the blocks of all frames
 constexpr double kLeastPart = 0.015, kMostPart = 0.7;  // of the frame
+// What makes a copy or a turned frame where nothing fits well: it is missed by so much more than the others;
+// is this share as far from its twin as photographs are from theirs, or from what is predicted turned.
+constexpr double kFitsLess = 1.2, kCopyFrom = 0.3, kTurnedFrom = 0.8;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double predicted(const FrameCells& cells, const CellFit& fit, std::size_t cell, std::size_t k) {
@@ -159,26 +162,57 @@ double missed_by_any_light(const FrameCells& cells, const CellFit& fit, std::siz
   return median(std::move(left));
 }
 
+// What is left of photograph k beside photograph j.
+double from_photograph(const FrameCells& cells, const CellFit& fit, std::size_t k, std::size_t j) {
+  return difference(cells, fit, k, [&](std::size_t cell) {
+    return static_cast<double>(cells.value[cell * cells.count + j]) *
+           static_cast<double>(cells.strength[cell * cells.count + j]);
+  });
+}
+
+// The same beside what is predicted of light j, and of its own where the photograph is turned.
+double from_light(const FrameCells& cells, const CellFit& fit, std::size_t k, std::size_t j) {
+  return difference(cells, fit, k, [&](std::size_t cell) {
+    return predicted(cells, fit, cell, j) * static_cast<double>(cells.strength[cell * cells.count + j]);
+  });
+}
+double from_turned(const FrameCells& cells, const CellFit& fit, std::size_t k) {
+  return difference(cells, fit, k, [&](std::size_t cell) {
+    const std::size_t back = cells.cells() - 1 - cell;
+    return predicted(cells, fit, back, k) * static_cast<double>(cells.strength[back * cells.count + k]);
+  });
+}
+
 // Why a photograph fits nothing, as far as it tells.
 void find_cause(const FrameCells& cells, const CellFit& fit, std::size_t k, FrameMisfit& misfit) {
   constexpr double kSame = 2.5;  // times what the others are missed by
   const double least = kSame * misfit.typical;
   for (std::size_t j = 0; j < cells.count; ++j) {
-    const auto expected = [&](std::size_t cell) {
-      return predicted(cells, fit, cell, j) * static_cast<double>(cells.strength[cell * cells.count + j]);
-    };
-    if (j != k && difference(cells, fit, k, expected) < least) misfit.lit_by = j;
-    const auto shown = [&](std::size_t cell) {
-      return static_cast<double>(cells.value[cell * cells.count + j]) *
-             static_cast<double>(cells.strength[cell * cells.count + j]);
-    };
-    if (j != k && difference(cells, fit, k, shown) < least) misfit.same_as = j;
+    if (j != k && from_light(cells, fit, k, j) < least) misfit.lit_by = j;
+    if (j != k && from_photograph(cells, fit, k, j) < least) misfit.same_as = j;
   }
-  const auto turned = [&](std::size_t cell) {
-    const std::size_t back = cells.cells() - 1 - cell;
-    return predicted(cells, fit, back, k) * static_cast<double>(cells.strength[back * cells.count + k]);
-  };
-  misfit.is_turned = !misfit.same_as && !misfit.lit_by && difference(cells, fit, k, turned) < least;
+  misfit.is_turned = !misfit.same_as && !misfit.lit_by && from_turned(cells, fit, k) < least;
+}
+
+// The photograph that is most like another one.
+struct Twin {
+  std::size_t of = 0;
+  double difference = std::numeric_limits<double>::infinity();
+};
+
+Twin twin_of(const FrameCells& cells, const CellFit& fit, std::size_t k) {
+  Twin twin;
+  for (std::size_t j = 0; j < cells.count; ++j) {
+    if (j == k) continue;
+    if (const double left = from_photograph(cells, fit, k, j); left < twin.difference) twin = {j, left};
+  }
+  return twin;
+}
+
+double typical_difference(const std::vector<Twin>& twins) {
+  std::vector<double> all;
+  for (const Twin& twin : twins) all.push_back(twin.difference);
+  return median(std::move(all));
 }
 
 }  // namespace
@@ -195,6 +229,9 @@ std::vector<FrameMisfit> frame_misfits(const FrameCells& cells, const CellFit& f
     blocks[k] = by_blocks(cells, errors[k]);
     all[k].missed = missed_beyond(cells, errors[k], {});
   });
+  std::vector<Twin> twins(cells.count);
+  parallel_for(cells.count, threads, [&](std::size_t k, int) { twins[k] = twin_of(cells, fit, k); });
+  const double typical_twin = typical_difference(twins);
   std::vector<double> sizes;
   for (const std::vector<double>& of_frame : blocks) {
     for (const double block : of_frame) {
@@ -222,9 +259,19 @@ std::vector<FrameMisfit> frame_misfits(const FrameCells& cells, const CellFit& f
         misfit.part_light = light_in(cells, fit, k, part);
       }
     }
-    misfit.fits_nothing = !misfit.part && misfit.missed > fits_to;
+    // Where little fits, what a wrong frame shows still fits it much better than its own place does.
+    const Twin& twin = twins[k];
+    const bool fits_less = misfit.missed > std::max(kMissedFrom, kFitsLess * misfit.typical);
+    const bool is_copy =
+        fits_less && twin.difference < kCopyFrom * typical_twin && misfit.missed > all[twin.of].missed;
+    const bool is_turned =
+        fits_less && !is_copy && from_turned(cells, fit, k) < kTurnedFrom * from_light(cells, fit, k, k);
+    if (is_copy || is_turned) misfit.part.reset();
+    misfit.fits_nothing = is_copy || is_turned || (!misfit.part && misfit.missed > fits_to);
     if (!misfit.fits_nothing) return;
     find_cause(cells, fit, k, misfit);
+    if (is_copy) misfit.same_as = twin.of;
+    misfit.is_turned = !misfit.same_as && !misfit.lit_by && (misfit.is_turned || is_turned);
     constexpr double kExplained = 0.3;  // of what is missed
     const bool is_told = misfit.same_as || misfit.lit_by || misfit.is_turned;
     misfit.fits_nothing = is_told || !(missed_by_any_light(cells, fit, k) < kExplained * misfit.missed);

@@ -67,8 +67,7 @@ class ImportBench : public testing::Test {
   /// Writes the frame of a LED; without `second` the file names no time.
   void put(const std::string& name, int led, std::optional<double> second = {},
            const std::function<void(RawFrame&)>& change = {}) const {
-    const RawFrame& is = scanned_->frames.at(led);
-    RawFrame frame = {copy(is.counts), is.cfa, is.black, is.white, is.shot};
+    RawFrame frame = copy_of(scanned_->frames.at(led));
     if (change) change(frame);
     simulator::DngTags tags;
     if (second) {
@@ -79,11 +78,6 @@ class ImportBench : public testing::Test {
     std::filesystem::create_directories((source_ / name).parent_path());
     const Result<void> written = simulator::write_dng(source_ / name, frame, tags);
     ASSERT_TRUE(written) << written.error().message();
-  }
-  static Image<std::uint16_t> copy(const Image<std::uint16_t>& from) {
-    Image<std::uint16_t> to(from.size());
-    for (int y = 0; y < from.height(); ++y) std::copy_n(from.plane().row(y), from.width(), to.plane().row(y));
-    return to;
   }
   /// Frames of all LEDs in this order of names, `step` seconds apart; 0 is the dark one.
   void put_all(const std::string& names, const std::vector<int>& leds, double step = 2,
