@@ -129,6 +129,17 @@ std::optional<double> pixels_in(const std::string& word) {
   return pixels;
 }
 
+std::optional<StopCounts> counts_in(const std::vector<std::string>& words) {
+  StopCounts counts = {};
+  if (words.size() != counts.size()) return {};
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const char* const last = words[i].data() + words[i].size();
+    const auto [end, wrong] = std::from_chars(words[i].data(), last, counts[i]);
+    if (wrong != std::errc() || end != last) return {};
+  }
+  return counts;
+}
+
 class RunningRig : public VirtualRig {
  public:
   RunningRig(const VirtualRigOptions& options, RigTable table, SceneLight light, RigFolder folder)
@@ -177,16 +188,18 @@ class RunningRig : public VirtualRig {
     if (kind == "end" && words.size() == 1) return end();
     const auto done = [&]() -> Result<void> {
       if (kind == "focus" && words.size() == 2) return change_focus(line, words[1]);
+      if (kind == "stops") return change_stops(line, {words.begin() + 1, words.end()});
       if (kind == "table") return change_table({words.begin() + 1, words.end()});
       if (kind == "knock") return change_place({words.begin() + 1, words.end()});
       if (kind == "light") return change_light({words.begin() + 1, words.end()});
       if (kind == "board" && words.size() == 2) return inject_board(line, words[1]);
       if (kind == "disk" && words.size() == 2) return fill_disk(line, words[1]);
       if (kind == "camera" && (words.size() == 2 || words.size() == 3)) return inject_camera(line, words);
-      return refusal(line,
-                     "a line is board NAME, camera NAME [SHOT], disk full, disk room, focus PIXELS, knock "
-                     "..., light ..., table ..., status, commands or end",
-                     "see weft-virtual-rig --help");
+      return refusal(
+          line,
+          "a line is board NAME, camera NAME [SHOT], disk full, disk room, focus PIXELS, stops RED "
+          "GREEN BLUE, knock ..., light ..., table ..., status, commands or end",
+          "see weft-virtual-rig --help");
     }();
     if (!done) return done.error();
     return std::string("ok");
@@ -216,6 +229,7 @@ class RunningRig : public VirtualRig {
     camera.clock_offset_s = options_.clock_offset_s;
     camera.port = options_.port;
     camera.shots_before = last_image_number(in_folder(kExposureLog));
+    camera.readout_s = options_.readout_s;
     camera.away_s = options_.away_s;
     camera.late_s = options_.late_s;
     camera.finder = [this] { return look(); };
@@ -269,6 +283,7 @@ class RunningRig : public VirtualRig {
     if (options_.below) add_light_below(light, below, exposure);
     if (options_.polariser) add_films(light, crossed, scene->matt ? &*scene->matt : nullptr);
     if (options_.same_noise) light.noise_key = lit_mask(light);
+    light.stops = stops();
     if (Result<void> ok = log(exposure, pins, light); !ok) return ok.error();
     return develop(scene->frames, light, exposure, options_.serial, options_.render.tiles.threads);
   }
@@ -315,6 +330,11 @@ class RunningRig : public VirtualRig {
     return faults_;
   }
 
+  StopCounts stops() const {
+    const std::lock_guard hold(mutex_);
+    return stops_;
+  }
+
   std::shared_ptr<const SceneLight> scene_light() const {
     const std::lock_guard hold(mutex_);
     return light_;
@@ -329,6 +349,14 @@ class RunningRig : public VirtualRig {
     const std::lock_guard turn(changing_);
     blur_px_ = *pixels;
     return show(seen_);
+  }
+
+  Result<void> change_stops(const std::string& line, const std::vector<std::string>& words) {
+    const std::optional<StopCounts> stops = counts_in(words);
+    if (!stops) return refusal(line, "channels stop at counts", "give three whole numbers, 0 to 65535");
+    const std::lock_guard hold(mutex_);
+    stops_ = *stops;
+    return {};
   }
 
   Result<void> change_table(const std::vector<std::string>& words) {
@@ -425,8 +453,9 @@ class RunningRig : public VirtualRig {
   std::shared_ptr<const SceneLight> light_;  // of what is seen, under mutex_
   RigFolder folder_;
   LitLog pins_;
-  mutable std::mutex mutex_;  // of faults_ and light_
+  mutable std::mutex mutex_;  // of faults_, stops_ and light_
   LightFaults faults_;
+  StopCounts stops_ = {};
   std::vector<std::string> environment_;
   std::uint32_t looks_ = 0;  // of the camera's thread
   int end_ = -1, log_ = -1;
@@ -461,7 +490,10 @@ std::vector<CommandWords> virtual_rig_commands() {
       {"disk full", "no file of a host of this rig takes any more", "disk full"},
       {"disk room", "ends that", "disk room"},
       {"focus PIXELS", "the focus ring is turned: the picture is blurred by so many raw pixels across",
-       "focus 3"}};
+       "focus 3"},
+      {"stops RED GREEN BLUE",
+       "the camera's channels stop at these counts, below the white that its files say; 0: at white",
+       "stops 15500 15500 15800"}};
   for (const BoardCommand& one : kBoardCommands) {
     const std::string line = fmt::format("board {}", one.name);
     all.push_back({line, one.does, line});

@@ -35,6 +35,11 @@ struct VirtualRigOptions {
   double away_s = 2;       ///< how long what a fault takes away is away
   double late_s = 8;       ///< how late a picture is that comes late
   std::uint16_t port = 0;  ///< of PTP/IP; 0: a free one
+  bool usb = false;             ///< the camera hangs on USB, by the stand-in for libusb; else PTP/IP
+  double readout_s = 1.0 / 60;  ///< from the first row's exposure to that of the last
+  double away_s = 2;            ///< how long what a fault takes away is away
+  double late_s = 8;            ///< how late a picture is that comes late
+  std::uint16_t port = 0;       ///< of PTP/IP; 0: a free one
   /// Noise follows from the LEDs that are lit and not from the camera's count of shots: the same shot taken
   /// again is the same picture.
   bool same_noise = false;
@@ -65,8 +70,8 @@ class VirtualRig {
   virtual const LightFrames& frames() const = 0;                    ///< until the focus is changed
   virtual const std::vector<std::string>& environment() const = 0;  ///< "NAME=value"
   /// What the control socket does with a line: "camera NAME [SHOT]", "board NAME", "light ...", "disk full",
-  /// "disk room", "focus PIXELS", "knock ...", "table ...", "status", "commands", "end". The answer is "ok",
-  /// JSON, or an error.
+  /// "disk room", "focus PIXELS", "stops ...", "knock ...", "table ...", "status", "commands", "end". The
+  /// answer is "ok", JSON, or an error.
   virtual Result<std::string> command(const std::string& line) = 0;
   /// Readable once somebody has said "end".
   virtual int end_descriptor() const = 0;

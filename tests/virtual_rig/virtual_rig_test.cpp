@@ -186,7 +186,8 @@ TEST_F(Rigged, RefusesCommandsThatItDoesNotKnow) {
   start();
   for (const char* line :
        {"", "board", "board explode", "camera", "camera explode", "camera drop_in_exposure 0",
-        "camera drop_in_exposure two", "light", "light dead 9", "status now", "sing"}) {
+        "camera drop_in_exposure two", "light", "light dead 9", "stops 1 2", "stops 1 2 70000", "stops 1 2 x",
+        "status now", "sing"}) {
     const Result<std::string> answer = rig_->command(line);
     ASSERT_FALSE(answer) << line;
     EXPECT_EQ(answer.error().kind, ErrorKind::kUsage) << line;

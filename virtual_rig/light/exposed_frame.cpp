@@ -30,6 +30,11 @@ constexpr double kThroughout = 1 - 1e-9;  // a sum of several pieces may fall sh
 struct WeightedPlane {
   View<const float> plane;
   double weight;
+  std::span<const double> by_row = {};
+
+  double weight_of(int y) const {
+    return by_row.empty() ? weight : weight * by_row[static_cast<std::size_t>(y)];
+  }
 };
 
 /// The planes that shine, by what a sample of them adds to the signal.
@@ -40,11 +45,13 @@ std::vector<WeightedPlane> lit_planes(const LightFrames& frames, const GatheredL
     const double seconds = light.leds_s[static_cast<std::size_t>(led - 1)];
     if (seconds <= 0) continue;
     const LightFrames& matt = light.matt != nullptr ? *light.matt : frames;
-    if (light.leds_share != 0) planes.push_back({frames.led(led), seconds * gain * light.leds_share});
-    if (light.matt_share != 0) planes.push_back({matt.led(led), seconds * gain * light.matt_share});
+    if (light.leds_share != 0)
+      planes.push_back({frames.led(led), seconds * gain * light.leds_share, light.leds_by_row});
+    if (light.matt_share != 0)
+      planes.push_back({matt.led(led), seconds * gain * light.matt_share, light.leds_by_row});
   }
   if (light.below_s > 0) planes.push_back({frames.ambient(), kThroughCloth * light.below_s * gain});
-  if (light.ambient_s > 0) planes.push_back({frames.ambient(), light.ambient_s * gain});
+  if (light.ambient_s > 0) planes.push_back({frames.ambient(), light.ambient_s * gain, light.ambient_by_row});
   return planes;
 }
 
@@ -89,8 +96,9 @@ class ReadOut {
     const std::size_t* column = &column_[static_cast<std::size_t>(x0)];
     for (const WeightedPlane& lit : planes_) {
       const float* row = lit.plane.row(from_y);
+      const double weight = lit.weight_of(y);
       for (std::size_t i = 0; i < signal.size(); ++i) {
-        signal[i] += lit.weight * static_cast<double>(row[column[i]]);
+        signal[i] += weight * static_cast<double>(row[column[i]]);
       }
     }
   }
@@ -124,6 +132,7 @@ class ReadOut {
       }
       std::transform(row.begin(), row.end(), counts.row(y) + tile.x0,
                      [&](double sample) { return count_of(sensor_, sample); });
+      stop({counts.row(y) + tile.x0, row.size()}, tile.x0, y);
     }
   }
 
@@ -147,6 +156,15 @@ class ReadOut {
     }
   }
 
+  void stop(std::span<std::uint16_t> counts, int x0, int y) const {
+    if (light_.stops == StopCounts{}) return;
+    constexpr CfaPattern kCfa;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      const auto channel = static_cast<std::size_t>(kCfa.channel_at(x0 + static_cast<int>(i), y));
+      if (light_.stops[channel] > 0) counts[i] = std::min(counts[i], light_.stops[channel]);
+    }
+  }
+
   void add_noise(int y, int x0, std::span<double> row) const {
     for (std::size_t i = 0; i < row.size(); ++i) {
       const auto x = static_cast<std::uint32_t>(x0) + static_cast<std::uint32_t>(i);
@@ -165,6 +183,28 @@ class ReadOut {
   std::optional<simulator::NonLinearity> bend_;
   std::vector<std::size_t> column_;  ///< of the planes, by column of the picture
 };
+
+/// The picture that a body takes behind its closed shutter after one.
+GatheredLight dark_after(const LightFrames& frames, const GatheredLight& light) {
+  GatheredLight dark;
+  dark.leds_s.assign(static_cast<std::size_t>(frames.leds()), 0.0);
+  dark.dark_s = light.dark_s;
+  dark.iso = light.iso;
+  dark.noise_key = ~light.noise_key;
+  return dark;
+}
+
+/// A body keeps the black level, and counts from 0 to white.
+void subtract_dark(const Image<std::uint16_t>& dark, const RawFrame& head, Image<std::uint16_t>& counts) {
+  for (int y = 0; y < counts.height(); ++y) {
+    for (int x = 0; x < counts.width(); ++x) {
+      const auto black =
+          static_cast<int>(head.black[static_cast<std::size_t>(y & 1)][static_cast<std::size_t>(x & 1)]);
+      counts(x, y) = static_cast<std::uint16_t>(
+          std::clamp(counts(x, y) - dark(x, y) + black, 0, static_cast<int>(head.white)));
+    }
+  }
+}
 
 RawFrame frame_head(const LightFrames& frames, const CameraExposure& exposure, const std::string& serial) {
   RawFrame frame;
@@ -225,6 +265,10 @@ GatheredLight gathered_light(const LightFrames& frames, const std::vector<double
   light.noise_key = exposure.image_number;
   light.move_x = faults.move_x;
   light.move_y = faults.move_y;
+  const int rows = frames.size().height;
+  if (faults.pulses) light.leds_by_row = light_by_row(*faults.pulses, exposure, rows);
+  if (faults.lamp) light.ambient_by_row = light_by_row(*faults.lamp, exposure, rows);
+  light.loses_its_dark = exposure.loses_its_dark;
   return light;
 }
 
@@ -270,6 +314,8 @@ Result<std::vector<std::uint8_t>> develop(const LightFrames& frames, const Gathe
                                           int threads) {
   RawFrame frame = frame_head(frames, exposure, serial);
   frame.counts = read_out(frames, light, threads);
+  if (light.loses_its_dark)
+    subtract_dark(read_out(frames, dark_after(frames, light), threads), frame, frame.counts);
   simulator::DngTags tags;
   for (std::size_t c = 0; c < 3; ++c) {
     const Rgb& balance = frames.scene().lights.white_balance;

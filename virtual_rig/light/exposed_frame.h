@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -14,21 +15,28 @@
 
 namespace weft::virtual_rig {
 
+/// Counts at which red, green and blue stop, whatever white a file says; 0: at white.
+using StopCounts = std::array<std::uint16_t, 3>;
+
 /// What a sensor is exposed to, and what it draws its noise by.
 struct GatheredLight {
   std::vector<double> leds_s;  ///< seconds of each LED's full light
   double ambient_s = 0;        ///< of LightFrames::ambient()
-  double below_s = 0;          ///< of the light below the cloth
+  /// What each row gets of either, over that; empty where light is steady.
+  std::vector<double> leds_by_row = {}, ambient_by_row = {};
+  double below_s = 0;  ///< of the light below the cloth
   /// What the cloth scatters alone, behind both films, where there is a polariser and the cloth has gloss.
   const LightFrames* matt = nullptr;
-  double leds_share = 1;  ///< of a LED's light that comes through the films
-  double matt_share = 0;  ///< of its light in `matt`, besides
-  double dark_s = 0;      ///< seconds in which charge gathers by warmth
+  double leds_share = 1;        ///< of a LED's light that comes through the films
+  double matt_share = 0;        ///< of its light in `matt`, besides
+  double dark_s = 0;            ///< seconds in which charge gathers by warmth
+  bool loses_its_dark = false;  ///< the body takes a dark picture as long and subtracts it
   double iso = 100;
   double aperture_gain = 1;     ///< light of this aperture over that of the scene's
   std::uint32_t noise_key = 0;  ///< the same light under the same key gives the same counts
   int move_x = 0;               ///< LightFaults
   int move_y = 0;
+  StopCounts stops = {};
 };
 
 /// Share of the time between the two that each LED's pin was on for. A pin that was on throughout counts 1

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kMostLight = 100;
 constexpr int kFarthestMove = 1000;
+constexpr double kFastest_hz = 1e6;
 
 /// The numbers after a command's name.
 struct Arguments {
@@ -27,6 +28,8 @@ struct Arguments {
   }
   int whole(std::size_t i) const { return static_cast<int>(values[i]); }
   bool is_light(std::size_t i) const { return values[i] >= 0 && values[i] <= kMostLight; }
+  bool is_frequency(std::size_t i) const { return values[i] > 0 && values[i] <= kFastest_hz; }
+  bool is_share(std::size_t i) const { return values[i] >= 0 && values[i] <= 1; }
   bool is_step(std::size_t i) const {
     return std::abs(values[i]) <= kFarthestMove && std::fmod(values[i], 2) == 0;
   }
@@ -57,11 +60,28 @@ const std::vector<Command>& commands() {
        [](const Arguments& a) { return a.is_led(0) && a.is_light(1); },
        [](LightFaults& f, const Arguments& a) { f.dimmed[a.whole(0)] = a.values[1]; }},
       {"flicker", "SIGMA", "0.01", "each LED's light varies by this from shot to shot, relative, 0 to 1", 1,
-       [](const Arguments& a) { return a.values[0] >= 0 && a.values[0] <= 1; },
+       [](const Arguments& a) { return a.is_share(0); },
        [](LightFaults& f, const Arguments& a) { f.flicker = a.values[0]; }},
+      {"pulses", "HERTZ DEPTH DUTY", "500 1 0.6",
+       "the LEDs' driver gives pulses of the same light on average: so many a second, of DUTY of their "
+       "period, "
+       "between which this share of the light is out",
+       3,
+       [](const Arguments& a) {
+         return a.is_frequency(0) && a.is_share(1) && a.is_share(2) && a.values[2] > 0;
+       },
+       [](LightFaults& f, const Arguments& a) {
+         f.pulses = LightWave{a.values[0], a.values[1], a.values[2]};
+       }},
       {"ambient", "SHARE", "0.1", "light of the room, of the brightest LED's at the table's centre, 0 to 100",
        1, [](const Arguments& a) { return a.is_light(0); },
        [](LightFaults& f, const Arguments& a) { f.ambient = a.values[0]; }},
+      {"lamp", "HERTZ DEPTH", "100 0.3",
+       "the room's light rises and falls by this share of it, so often a second, as a sine", 2,
+       [](const Arguments& a) { return a.is_frequency(0) && a.is_share(1); },
+       [](LightFaults& f, const Arguments& a) {
+         f.lamp = LightWave{a.values[0], a.values[1], {}};
+       }},
       {"move", "X Y", "6 -4",
        "the camera was knocked: the picture lies X pixels right and Y down, even, to 1000", 2,
        [](const Arguments& a) { return a.is_step(0) && a.is_step(1); },
@@ -82,6 +102,13 @@ std::optional<double> number_of(std::string_view text) {
 
 std::string said(const Command& command, const char* arguments) {
   return *arguments == '\0' ? command.name : fmt::format("{} {}", command.name, arguments);
+}
+
+Json json_of(const std::optional<LightWave>& wave) {
+  if (!wave) return {};
+  Json told = {{"hertz", wave->hertz}, {"depth", wave->depth}};
+  if (wave->duty) told["duty"] = *wave->duty;
+  return told;
 }
 
 Error refusal(const std::vector<std::string>& words, const std::string& why, const std::string& remedy) {
@@ -120,9 +147,10 @@ Result<void> change_faults(LightFaults& faults, const std::vector<std::string>& 
 Json json_of(const LightFaults& faults) {
   Json dimmed = Json::object();
   for (const auto& [led, share] : faults.dimmed) dimmed[std::to_string(led)] = share;
-  return {{"dead", faults.dead},     {"stuck", faults.stuck},     {"swapped", faults.swapped},
-          {"dimmed", dimmed},        {"flicker", faults.flicker}, {"ambient", faults.ambient},
-          {"move_x", faults.move_x}, {"move_y", faults.move_y}};
+  return {{"dead", faults.dead},       {"stuck", faults.stuck},        {"swapped", faults.swapped},
+          {"dimmed", dimmed},          {"flicker", faults.flicker},    {"pulses", json_of(faults.pulses)},
+          {"ambient", faults.ambient}, {"lamp", json_of(faults.lamp)}, {"move_x", faults.move_x},
+          {"move_y", faults.move_y}};
 }
 
 std::vector<double> with_faults(const LightFaults& faults, std::vector<double> pins) {

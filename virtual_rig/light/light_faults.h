@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "core/base/json_document.h"
 #include "core/base/result.h"
 #include "virtual_rig/commands/command_words.h"
+#include "virtual_rig/light/light_wave.h"
 
 namespace weft::virtual_rig {
 
@@ -20,9 +22,11 @@ struct LightFaults {
   std::vector<std::pair<int, int>> swapped;  ///< wires that changed places, in this order
   std::map<int, double> dimmed;              ///< what a LED gives, of its light; above 1 it gives more
   double flicker = 0;  ///< standard deviation of a LED's brightness from exposure to exposure, relative
-  double ambient = 0;  ///< light of the room beyond the scene's, in its unit (lights.ambient)
-  int move_x = 0;      ///< the picture moves right by this many pixels, even: filters keep their colours
-  int move_y = 0;      ///< down
+  std::optional<LightWave> pulses;  ///< of the LEDs' driver
+  double ambient = 0;               ///< light of the room beyond the scene's, in its unit (lights.ambient)
+  std::optional<LightWave> lamp;    ///< how the room's light comes and goes
+  int move_x = 0;  ///< the picture moves right by this many pixels, even: filters keep their colours
+  int move_y = 0;  ///< down
 
   bool operator==(const LightFaults&) const = default;
 };

@@ -61,6 +61,10 @@ void define(CLI::App& app, Arguments& a) {
   app.add_option("--clock-offset", a.rig.clock_offset_s, "seconds that the camera's clock is fast")
       ->capture_default_str()
       ->check(CLI::Range(-1e8, 1e8));
+  app.add_option("--readout", a.rig.readout_s,
+                 "seconds from the exposure of the camera's first row to that of its last")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10.0));
   app.add_option("--away", a.rig.away_s, "seconds that a fault keeps the camera or its cable away for")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1000.0));

@@ -337,7 +337,7 @@ Answer PtpBody::capture(bool to_memory) {
   const Exposure exposure = expose(to_memory);
   const auto half = exposure.camera.opened + (exposure.camera.closed - exposure.camera.opened) / 2;
   timeline_.at(half, [this, exposure] { half_exposed(exposure); });
-  timeline_.at(exposure.camera.closed, [this, exposure] { close_shutter(exposure); });
+  timeline_.at(exposure.done, [this, exposure] { finish(exposure); });
   return {};
 }
 

@@ -91,6 +91,7 @@ class PtpBody {
     bool to_memory = false;
     int power_cycle = 0;
     CameraExposure camera = {};
+    RigClock::time_point done = {};  ///< with its dark picture, where it takes one
     std::string date = {};
   };
   struct Notice {
@@ -116,7 +117,7 @@ class PtpBody {
   bool busy() const;
   Exposure expose(bool to_memory);
   void half_exposed(const Exposure& exposure);
-  void close_shutter(const Exposure& exposure);
+  void finish(const Exposure& exposure);
   Result<Bytes> develop(const Exposure& exposure);
   void keep(const Exposure& exposure, Bytes file);
   std::uint32_t new_handle(bool to_memory) const;

@@ -32,16 +32,20 @@ PtpBody::Exposure PtpBody::expose(bool to_memory) {
   Exposure exposure = {.shot = captures_, .to_memory = to_memory, .power_cycle = power_cycles_};
   CameraExposure& camera = exposure.camera;
   camera.exposure_us = properties_.exposure_us();
-  camera.iso = static_cast<double>(properties_.number(kIso));
+  camera.readout_s = options_.readout_s;
+  camera.iso = properties_.taken_iso();
   camera.f_number = properties_.f_number();
   camera.opened = RigClock::now() + facts_.shutter_lag;
   camera.closed = camera.opened + duration(camera.exposure_us * 1e-6);
+  camera.loses_its_dark = properties_.takes_dark_after();
   camera.image_number = ++image_number_;
   const ClockReading clock =
       read_clock(std::chrono::system_clock::now() + facts_.shutter_lag, properties_.clock_offset_s());
   camera.date_time = exif_time(clock);
   camera.milliseconds = clock.milliseconds;
   exposure.date = ptp_time(clock);
+  exposure.done = camera.closed;
+  if (camera.loses_its_dark) exposure.done += camera.closed - camera.opened;
   return exposure;
 }
 
@@ -57,7 +61,7 @@ void PtpBody::half_exposed(const Exposure& exposure) {
   }
 }
 
-void PtpBody::close_shutter(const Exposure& exposure) {
+void PtpBody::finish(const Exposure& exposure) {
   std::unique_lock lock(mutex_);
   if (exposure.power_cycle != power_cycles_) return;
   const bool dropped = faults_.take(PtpFault::kDropInExposure, exposure.shot);
@@ -178,11 +182,18 @@ void PtpBody::befall(PtpFault fault) {
     case PtpFault::kRawOff:
       properties_.turn(kImageQuality, 2);
       return tell_changes({kImageQuality});
+    case PtpFault::kAutoIsoOn:
+      properties_.turn(kIsoAuto, 1);
+      return tell_changes({kAutoIso, kIsoAuto});
+    case PtpFault::kLongNoiseOn:
+      properties_.turn(kLongExposureNoise, 1);
+      return tell_changes({kLongExposureNoise});
     case PtpFault::kWell:
       faults_.forget();
       never_live_ = false;
       properties_.turn(kBatteryLevel, static_cast<int>(std::lround(100 * options_.battery)));
       properties_.turn(kImageQuality, 4);
+      for (const PropertyCode code : {kIsoAuto, kLongExposureNoise}) properties_.turn(code, 0);
       properties_.turn_dial(true);
       properties_.set_clock_offset(options_.clock_offset_s);
       cable_in_ = port_open_ = true;

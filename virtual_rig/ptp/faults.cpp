@@ -65,6 +65,11 @@ constexpr auto kFaultKinds = std::to_array<PtpFaultKind>({
     {kClockBack, kBefore, "clock_back", "The camera's clock is set back by an hour."},
     {kClockAhead, kBefore, "clock_ahead", "The camera's clock is set ahead by an hour."},
     {kClockReset, kBefore, "clock_reset", "The camera's clock begins anew at the year 2000."},
+    {kAutoIsoOn, kBefore, "auto_iso",
+     "Somebody switches auto ISO on: pictures are taken at four times the ISO that is set."},
+    {kLongNoiseOn, kBefore, "long_exposure_noise",
+     "Somebody switches the noise reduction of long exposures on: beyond a second the camera takes a dark "
+     "picture after each, as long, and subtracts it."},
     {kUsbUnplug, kShot, "usb_unplug", "The USB cable is pulled in the exposure and stays out."},
     {kUsbUnplugInData, kShot, "usb_unplug_in_data",
      "The USB cable is pulled when half of the picture has been sent, and stays out."},

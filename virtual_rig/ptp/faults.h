@@ -43,6 +43,8 @@ enum class PtpFault : std::uint8_t {
   kClockBack,
   kClockAhead,
   kClockReset,
+  kAutoIsoOn,
+  kLongNoiseOn,
   kUsbUnplug,
   kUsbUnplugInData,
   kUsbUnplugNow,

@@ -18,6 +18,7 @@ using enum PropertyForm;
 constexpr std::uint16_t kNikons = 0xd000;  // and above
 constexpr std::int64_t kJpegFine = 2, kNef = 4;
 constexpr std::int64_t kManual = 1, kProgram = 2;
+constexpr double kLongExposure_us = 1e6;
 
 std::vector<PropertyValue> numbers(const std::vector<std::int64_t>& from) {
   return {from.begin(), from.end()};
@@ -222,13 +223,15 @@ ResponseCode PropertyTable::set(std::uint16_t code, BytesView bytes) {
   return kOk;
 }
 
-/// Keeps the two shutter times of a body at one.
+/// Keeps the two shutter times of a body at one, and its two names of auto ISO.
 void PropertyTable::assign(Property& property, const PropertyValue& value) {
   property.value = value;
   if (property.code == kShutterSpeed)
     find(kExposureTime)->value = exposure_time(std::get<std::int64_t>(value));
   else if (property.code == kExposureTime)
     find(kShutterSpeed)->value = nearest_speed(std::get<std::int64_t>(value));
+  else if (property.code == kAutoIso || property.code == kIsoAuto)
+    find(kAutoIso)->value = find(kIsoAuto)->value = value;
 }
 
 std::int64_t PropertyTable::number(PropertyCode code) const {
@@ -256,6 +259,16 @@ double PropertyTable::exposure_us() const {
 
 double PropertyTable::f_number() const {
   return static_cast<double>(number(kFNumber)) / 100;
+}
+
+double PropertyTable::taken_iso() const {
+  const std::int64_t set = number(kIso);
+  if (number(kIsoAuto) == 0) return static_cast<double>(set);
+  return static_cast<double>(std::min(4 * set, std::get<std::int64_t>(find(kIso)->values.back())));
+}
+
+bool PropertyTable::takes_dark_after() const {
+  return number(kLongExposureNoise) != 0 && exposure_us() > kLongExposure_us;
 }
 
 }  // namespace weft::virtual_rig::ptp

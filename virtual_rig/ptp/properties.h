@@ -59,6 +59,10 @@ class PropertyTable {
 
   double exposure_us() const;
   double f_number() const;
+  /// What pictures are taken at: auto ISO makes it four times what is set, as far as it goes.
+  double taken_iso() const;
+  /// Whether noise reduction has the body take a dark picture after one of this exposure.
+  bool takes_dark_after() const;
   double clock_offset_s() const { return clock_offset_s_; }
   void set_clock_offset(double offset_s) { clock_offset_s_ = offset_s; }
 

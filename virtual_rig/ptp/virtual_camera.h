@@ -19,11 +19,13 @@ namespace weft::virtual_rig {
 struct CameraExposure {
   RigClock::time_point opened, closed;  ///< of the shutter
   double exposure_us = 0;
+  double readout_s = 0;  ///< from the first row's exposure to that of the last
   double iso = 0;
   double f_number = 0;
   std::uint32_t image_number = 0;  ///< the body's count of shots
   std::string date_time;           ///< by its clock, "2026:01:31 23:59:58"
   int milliseconds = 0;            ///< of date_time
+  bool loses_its_dark = false;     ///< noise reduction: the body subtracts a dark picture as long
 };
 
 /// Makes the file of an exposure: its bytes. Called on a thread of the camera's; what it takes is read-out.
@@ -52,6 +54,7 @@ struct VirtualCameraOptions {
   std::uint32_t shots_before = 0;  ///< its image numbers follow these
   std::uint16_t port = 0;          ///< PTP/IP on 127.0.0.1; 0: a free one
   std::filesystem::path usb = {};  ///< a socket for the libusb stand-in; empty: no USB
+  double readout_s = 1.0 / 60;     ///< from its first row's exposure to that of the last
   double away_s = 2;               ///< how long what is pulled out or switched off by a fault is away
   double late_s = 8;               ///< how late a picture is that comes late
   LookThrough finder = {};         ///< for live view, 15 pictures a second; none: it is black

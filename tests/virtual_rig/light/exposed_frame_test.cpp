@@ -272,6 +272,87 @@ TEST(Exposure, ShowsFaultsOfLight) {
   EXPECT_EQ(one, gathered(frames, {0, 0, 1}, flicker, 1).leds_s[2]);
 }
 
+TEST(Exposure, GivesEachRowTheLightOfItsOwnTime) {
+  const LightFrames frames = opened(small_scene());
+  CameraExposure exposure = exposure_of(frames);
+  exposure.opened = RigClock::time_point(microseconds(123456));
+  exposure.readout_s = 0.02;
+  LightFaults faults;
+  faults.ambient = 0.5;
+  const auto signal = [&](const std::vector<double>& pins) {
+    return signal_of(frames, gathered_light(frames, pins, faults, exposure));
+  };
+  const Image<double> lit = signal({0, 0, 1}), dark = signal({0, 0, 0});
+  faults.pulses = LightWave{500, 1, 0.5};
+  faults.lamp = LightWave{100, 0.4, {}};
+  const Image<double> flickers = signal({0, 0, 1});
+  const double exposure_s = exposure.exposure_us * 1e-6;
+  for (int y = 0; y < 96; ++y) {
+    const double from_s = 0.123456 + 0.02 * y / 95;
+    const double by_led = mean_light(*faults.pulses, from_s, exposure_s);
+    const double by_lamp = mean_light(*faults.lamp, from_s, exposure_s);
+    EXPECT_NEAR(flickers(64, y), by_led * (lit(64, y) - dark(64, y)) + by_lamp * dark(64, y), 1e-9) << y;
+  }
+  EXPECT_GT(mean_light(*faults.pulses, 0.1235, exposure_s), 0);
+}
+
+TEST(Exposure, OfWholePeriodsIsThatOfSteadyLight) {
+  const LightFrames frames = opened(small_scene());
+  CameraExposure exposure = exposure_of(frames);
+  exposure.opened = RigClock::time_point(microseconds(98765));
+  exposure.readout_s = 0.02;
+  exposure.exposure_us = 20000;
+  LightFaults faults;
+  const Image<double> steady = signal_of(frames, gathered_light(frames, {0, 0, 1}, faults, exposure));
+  faults.pulses = LightWave{250, 1, 0.3};
+  const Image<double> flickers = signal_of(frames, gathered_light(frames, {0, 0, 1}, faults, exposure));
+  for (int y = 0; y < 96; ++y) EXPECT_NEAR(flickers(64, y) / steady(64, y), 1, 1e-9) << y;
+}
+
+TEST(Exposure, StopsWhereItsChannelsDo) {
+  const LightFrames frames = opened(small_scene());
+  CameraExposure exposure = exposure_of(frames);
+  exposure.exposure_us *= 1000;
+  GatheredLight light = gathered_light(frames, {1, 1, 1}, {}, exposure);
+  light.stops = {15000, 14000, 0};
+  const Image<std::uint16_t> counts = read_out(frames, light);
+  constexpr CfaPattern kCfa;
+  for (int y = 0; y < 96; ++y)
+    for (int x = 0; x < 128; ++x)
+      ASSERT_EQ(counts(x, y),
+                (std::array{15000, 14000, 15846}[static_cast<std::size_t>(kCfa.channel_at(x, y))]));
+  light.stops = {15000, 15000, 15000};
+  light.leds_s = {0, 0, exposure_of(frames).exposure_us * 1e-6};
+  GatheredLight without = light;
+  without.stops = {};
+  EXPECT_EQ(difference_of(read_out(frames, light), read_out(frames, without)).photosites, 0)
+      << "what is below is as it was";
+}
+
+TEST(Exposure, LosesItsDarkWhereTheBodySubtractsIt) {
+  Scene scene = small_scene();
+  scene.camera.body = simulator::Body::kOffset;
+  scene.effects.dark_current = true;
+  scene.camera.defects.hot_per_million = 2000;
+  scene.camera.defects.dark_electrons_per_s = 200;
+  const LightFrames frames = opened(scene);
+  CameraExposure exposure = exposure_of(frames);
+  exposure.exposure_us = 2e6;
+  const auto decoded = [&](bool loses_its_dark) {
+    exposure.loses_its_dark = loses_its_dark;
+    const fs::path file = fresh_folder() / "dark.dng";
+    const auto bytes =
+        develop(frames, gathered_light(frames, {0, 0, 0}, {}, exposure), exposure, "1").value();
+    EXPECT_TRUE(write_file(file, std::string(bytes.begin(), bytes.end())));
+    return capture::decode_raw(file).value().counts;
+  };
+  const double per_count = frames.rig().sensor.electrons_per_count();
+  const Image<std::uint16_t> plain = decoded(false), subtracted = decoded(true);
+  EXPECT_GT(mean_of(plain), 600 + 0.5 * 400 / per_count) << "two seconds of warmth";
+  EXPECT_NEAR(mean_of(subtracted), 600, 0.5);
+  EXPECT_EQ(subtracted.size(), plain.size());
+}
+
 TEST(Exposure, FlickersAsItsSceneSays) {
   Scene scene = small_scene();
   scene.effects.led_drift = true;

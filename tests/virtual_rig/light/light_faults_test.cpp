@@ -39,7 +39,9 @@ TEST(LightFaults, ChangeWhatTheirNameSays) {
 TEST(LightFaults, AddUpUntilALightIsNormal) {
   EXPECT_THAT(lit({"swap 1 2", "swap 2 3"}, {1, 0, 0, 0}), ElementsAre(0, 0, 1, 0));
   EXPECT_THAT(lit({"stuck 1", "stuck 2", "dead 2", "dim 1 0.5"}, {0, 0, 0, 0}), ElementsAre(0.5, 0, 0, 0));
-  EXPECT_EQ(after({"dead 1", "ambient 0.1", "move 4 -6", "flicker 0.01", "normal"}), LightFaults());
+  EXPECT_EQ(after({"dead 1", "ambient 0.1", "move 4 -6", "flicker 0.01", "pulses 500 1 0.6", "lamp 100 0.3",
+                   "normal"}),
+            LightFaults());
 }
 
 TEST(LightFaults, AreToldAsJson) {
@@ -49,6 +51,10 @@ TEST(LightFaults, AreToldAsJson) {
   EXPECT_EQ(told.at("move_x"), 6);
   EXPECT_EQ(told.at("move_y"), -4);
   EXPECT_EQ(told.at("dimmed").at("2"), 0.5);
+  EXPECT_EQ(told.at("pulses"), Json());
+  const Json flickers = json_of(after({"pulses 500 1 0.6", "lamp 100 0.3"}));
+  EXPECT_EQ(flickers.at("pulses"), Json({{"hertz", 500}, {"depth", 1}, {"duty", 0.6}}));
+  EXPECT_EQ(flickers.at("lamp"), Json({{"hertz", 100}, {"depth", 0.3}}));
 }
 
 TEST(LightFaults, RefuseWhatNoRigHas) {
@@ -67,6 +73,12 @@ TEST(LightFaults, RefuseWhatNoRigHas) {
                                                        {"move", "3", "2"},
                                                        {"move", "2", "1e9"},
                                                        {"flicker", "2"},
+                                                       {"pulses", "500", "1"},
+                                                       {"pulses", "0", "1", "0.5"},
+                                                       {"pulses", "500", "1", "0"},
+                                                       {"pulses", "500", "1.1", "0.5"},
+                                                       {"lamp", "1e7", "0.3"},
+                                                       {"lamp", "100", "-0.1"},
                                                        {"normal", "1"}};
   for (const std::vector<std::string>& words : wrong) {
     LightFaults faults;

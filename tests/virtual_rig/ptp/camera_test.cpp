@@ -131,6 +131,21 @@ TEST(VirtualCamera, ExposesInRealTimeForAsLongAsItIsSetTo) {
   EXPECT_TRUE(client->next_file(5).added);
 }
 
+TEST(VirtualCamera, TakesTwiceItsTimeForALongExposureWhoseNoiseItReduces) {
+  Studio studio;
+  const auto client = connected(studio);
+  ASSERT_EQ(client->set("shutterspeed2", "2"), GP_OK);
+  studio.inject("long_exposure_noise");
+  client->wait(1);
+  EXPECT_EQ(client->get("longexpnr"), "On");
+  const auto before = RigClock::now();
+  ASSERT_GE(client->trigger(), 0);
+  EXPECT_GE(RigClock::now() - before, std::chrono::milliseconds(4000));
+  const CameraExposure exposure = studio.exposures().at(0);
+  EXPECT_EQ(exposure.closed - exposure.opened, std::chrono::milliseconds(2000)) << "of light";
+  EXPECT_TRUE(exposure.loses_its_dark);
+}
+
 TEST(VirtualCamera, HasAClockOfItsOwnThatRuns) {
   Studio studio({.clock_offset_s = -3600});
   const auto client = connected(studio);

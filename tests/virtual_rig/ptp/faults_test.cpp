@@ -248,6 +248,10 @@ TEST(CameraFaults, HandsOnTheBodyShowInItsSettings) {
   studio.inject("raw_off");
   client->wait(1);
   EXPECT_NE(client->get("imagequality"), "NEF (Raw)");
+  studio.inject("auto_iso");
+  client->wait(1);
+  EXPECT_EQ(client->get("isoauto"), "On");
+  EXPECT_EQ(client->get("iso"), "100");
   studio.inject("dial_turned");
   client->wait(1);
   EXPECT_EQ(client->get("expprogram"), "P");

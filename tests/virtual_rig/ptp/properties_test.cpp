@@ -75,6 +75,29 @@ TEST(PropertyTable, TakesShutterAndApertureFromTheHostOnTheDialsMAlone) {
   EXPECT_EQ(properties.set(kShutterSpeed, number(1 << 16 | 60)), kOk);
 }
 
+TEST(PropertyTable, TakesPicturesAtFourTimesTheIsoByItself) {
+  PropertyTable properties = table();
+  EXPECT_EQ(properties.taken_iso(), 100);
+  EXPECT_EQ(properties.set(kAutoIso, Bytes{1}), kOk);
+  EXPECT_EQ(properties.number(kIsoAuto), 1) << "one switch of two names";
+  EXPECT_EQ(properties.taken_iso(), 400);
+  EXPECT_EQ(properties.number(kIso), 100) << "as it was set";
+  properties.turn(kIso, 3200);
+  EXPECT_EQ(properties.taken_iso(), 6400);
+  EXPECT_EQ(properties.set(kIsoAuto, Bytes{0}), kOk);
+  EXPECT_EQ(properties.taken_iso(), 3200);
+}
+
+TEST(PropertyTable, ReducesNoiseBeyondASecond) {
+  PropertyTable properties = table();
+  properties.turn(kShutterSpeed, 13 << 16 | 10);
+  EXPECT_FALSE(properties.takes_dark_after());
+  properties.turn(kLongExposureNoise, 1);
+  EXPECT_TRUE(properties.takes_dark_after());
+  properties.turn(kShutterSpeed, 1 << 16 | 1);
+  EXPECT_FALSE(properties.takes_dark_after());
+}
+
 TEST(PropertyTable, MovesTheShutterByAStepAtBothEnds) {
   PropertyTable properties = table();
   properties.turn(kShutterSpeed, 30 << 16 | 1);
