@@ -95,6 +95,7 @@ constexpr std::array kFaults = {
     Fault{"camera's clock set ahead", What::kSay, When::kAtMoment, "camera clock_ahead"},
     Fault{"camera's clock begins anew", What::kSay, When::kAtMoment, "camera clock_reset"},
     Fault{"raw switched off", What::kSay, When::kAtMoment, "camera raw_off"},
+    Fault{"auto ISO switched on", What::kSay, When::kAtMoment, "camera auto_iso"},
     Fault{"board unplugged and plugged in", What::kSay, When::kAtMoment, "board unplug", "board replug"},
     Fault{"board reset", What::kSay, When::kAtMoment, "board reset"},
     Fault{"board's firmware hangs", What::kSay, When::kAtMoment, "board hang"},

@@ -50,15 +50,16 @@ Result<void> check_exposure(const PhotographFacts& facts, const ExposureSettings
   const auto differs = [](double said, double wanted) {
     return said > 0 && wanted > 0 && !same_setting(said, wanted);
   };
-  const auto refuse = [](const char* name, const std::string& said, const std::string& wanted) {
+  const auto refuse = [](const char* name, const std::string& said, const std::string& wanted,
+                         const char* remedy = "leave the camera's dials alone during a scan") {
     return Error{ErrorKind::kBadData, "the photograph was not taken as set", "",
-                 fmt::format("{} is {}, not {}", name, said, wanted),
-                 "leave the camera's dials alone during a scan"};
+                 fmt::format("{} is {}, not {}", name, said, wanted), remedy};
   };
   if (differs(facts.exposure_us, set.exposure_us))
     return refuse("exposure", exposure_words(facts.exposure_us), exposure_words(set.exposure_us));
   if (differs(facts.iso, set.iso))
-    return refuse("ISO", fmt::format("{:.10g}", facts.iso), fmt::format("{:.10g}", set.iso));
+    return refuse("ISO", fmt::format("{:.10g}", facts.iso), fmt::format("{:.10g}", set.iso),
+                  "switch the camera's auto ISO off, and leave its dials alone during a scan");
   if (differs(facts.f_number, set.f_number))
     return refuse("f-number", fmt::format("{:g}", facts.f_number), fmt::format("{:g}", set.f_number));
   return {};

@@ -318,8 +318,14 @@ class Worker {
       tell();
       return *event->file;
     }
-    return Error{ErrorKind::kTryAgain, "no photograph came", camera_->address().port,
-                 "the camera was busy or lost it", "take it again"};
+    Error none = {ErrorKind::kTryAgain, "no photograph came", camera_->address().port,
+                  "the camera was busy or lost it", "take it again"};
+    if (exposure_us_ > kLongExposureUs) {
+      none.remedy =
+          "switch the camera's noise reduction of long exposures off, which takes as long again, and take it "
+          "again";
+    }
+    return none;
   }
 
   /// The bytes in a file, synced, while another thread sums them up.
@@ -368,6 +374,7 @@ class Worker {
   }
 
   static constexpr int kPollMs = 10;
+  static constexpr double kLongExposureUs = 1e6;    // beyond, bodies reduce noise by a dark picture
   static constexpr double kLongestShutterLagS = 2;  // a mirror that is locked up first, a slow focal plane
   static constexpr double kFreshS = 1;
   static constexpr int kBareWaitMs = 200;

@@ -151,6 +151,28 @@ TEST_F(ScanWithABody, WhoseSettingRoundsTheShutterTimeIsSolved) {
   EXPECT_EQ(plan->repeats.size(), 1u);
 }
 
+TEST_F(ScanWithABody, WhoseAutoIsoIsOnSwitchesItOffWhereItCan) {
+  start(simulator::Body::kD5100);
+  for (const char* by_hand : {"camera auto_iso", "camera long_exposure_noise"})
+    ASSERT_TRUE(rig_->command(by_hand));
+  const Result<capture::ScanOutcome> outcome = scan(16600);
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_EQ(outcome->frames_retaken, 0);
+  for (const Shot& shot : outcome->session.shots)
+    EXPECT_EQ(capture::decode_raw(outcome->session.path_of(shot)).value().shot.iso, 100) << shot.file;
+}
+
+TEST_F(ScanWithABody, WhoseAutoIsoCannotBeSwitchedOffSaysSoAtTheFirstFrame) {
+  start(simulator::Body::kD80);  // whose profile has no such setting
+  ASSERT_TRUE(rig_->command("camera auto_iso"));
+  const Result<capture::ScanOutcome> outcome = scan(1e6 / 30);
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().kind, ErrorKind::kBadData);
+  EXPECT_EQ(outcome.error().why, "ISO is 400, not 100");
+  EXPECT_THAT(outcome.error().remedy, testing::HasSubstr("auto ISO off"));
+  EXPECT_EQ(pin_shares(folder_ / "rig" / "exposures.jsonl").size(), 1u) << "no shot was taken again in vain";
+}
+
 TEST_F(ScanWithABody, WhoseRigHasFilmsAndALightBelowTakesAllOfThemAndSolvesTheFirst) {
   start(simulator::Body::kD5100, true);
   const Result<capture::ScanOutcome> outcome = scan(16600);

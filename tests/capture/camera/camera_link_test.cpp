@@ -243,7 +243,7 @@ TEST(CameraLink, SaysSoWhereTheCameraTakesNoRaw) {
 
 /// What somebody does to the camera between two shots: no photograph that is not as it was asked for is kept.
 TEST(CameraLink, NoticesWhatSomebodyTurnsBetweenShots) {
-  for (const char* fault : {"dial_turned", "battery_low", "raw_off", "exposure_changed"}) {
+  for (const char* fault : {"dial_turned", "battery_low", "raw_off", "exposure_changed", "auto_iso"}) {
     LinkBench bench;
     CameraLink& link = bench.ready();
     ASSERT_TRUE(bench.camera().inject({fault, 2}));
@@ -257,7 +257,7 @@ TEST(CameraLink, NoticesWhatSomebodyTurnsBetweenShots) {
 }
 
 TEST(CameraLink, PutsRawAndExposureRightWhenItConnectsAgain) {
-  for (const char* fault : {"raw_off", "exposure_changed"}) {
+  for (const char* fault : {"raw_off", "exposure_changed", "auto_iso"}) {
     LinkBench bench;
     CameraLink& link = bench.ready();
     ASSERT_TRUE(bench.camera().inject({fault, 1}));
@@ -268,6 +268,37 @@ TEST(CameraLink, PutsRawAndExposureRightWhenItConnectsAgain) {
     const auto taken = link.take(bench.raw(1), [] {});
     EXPECT_TRUE(taken) << fault << ": " << taken.error().message();
   }
+}
+
+TEST(CameraLink, SwitchesOffWhatTheBodyWouldDoToPhotographs) {
+  LinkBench bench;
+  for (const char* by_hand : {"auto_iso", "long_exposure_noise"})
+    ASSERT_TRUE(bench.camera().inject({by_hand, 1}));
+  CameraLink& link = bench.ready();
+  ASSERT_TRUE(link.set({2e6, 100, 8}));
+  const auto begin = std::chrono::steady_clock::now();
+  const auto taken = link.take(bench.raw(1), [] {});
+  ASSERT_TRUE(taken) << taken.error().message();
+  EXPECT_EQ(taken->exposure.iso, 100);
+  EXPECT_LT(seconds_since(begin), 4) << "no dark photograph follows";
+}
+
+TEST(CameraLink, SaysOfALongExposureThatDoesNotComeThatItsNoiseMayBeReduced) {
+  VirtualCameraOptions options;
+  options.body = virtual_rig::CameraBody::kD80;
+  LinkBench bench(options);
+  bench.change_profile({{"model = \"D5100\"", "model = \"D80\""},
+                        {"trigger = \"blocks\"", "trigger = \"returns_at_once\""},
+                        {"readout_s = 5", "readout_s = 0.5"},
+                        {"longexpnr = \"Off\"", ""},
+                        {"\"Internal RAM\"", "\"Memory card\""}});
+  ASSERT_TRUE(bench.camera().inject({"long_exposure_noise", 1}));
+  CameraLink& link = bench.ready();
+  ASSERT_TRUE(link.set({2e6, 100, 8}));
+  const auto taken = link.take(bench.raw(1), [] {});
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().kind, ErrorKind::kTryAgain) << taken.error().message();
+  EXPECT_THAT(taken.error().remedy, HasSubstr("noise reduction of long exposures off"));
 }
 
 TEST(CameraLink, SaysThatNoCameraIsThere) {

@@ -275,6 +275,14 @@ TEST(PhotographEvidence, RefusesWhatWasNotTakenAsSet) {
   }
 }
 
+TEST(PhotographEvidence, SaysOfAnotherIsoThatTheCameraChoseIt) {
+  PhotographFacts facts = good_facts();
+  facts.iso = 400;
+  const Error said = check_photograph(facts, asked()).error();
+  EXPECT_EQ(said.why, "ISO is 400, not 100");
+  EXPECT_EQ(said.remedy, "switch the camera's auto ISO off, and leave its dials alone during a scan");
+}
+
 TEST(PhotographEvidence, TellsAJpegFromWhatIsNoPhotograph) {
   PhotographFacts facts = good_facts();
   facts.ending = "jpg";
