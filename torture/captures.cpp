@@ -114,6 +114,7 @@ HardCase dim_light() {
 HardCase hot_photosite() {
   constexpr double kShare = 0.4;
   RawFrame frame = even_frame({64, 48}, kBlack + kShare * (kWhite - kBlack));
+  frame.full.fill(kWhite);
   frame.counts(11, 11) = 16383;
   double plain = 0;
   for (int y = 0; y < 48; ++y) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/rig/radiometry.h"
+#include "core/rig/reading_stop.h"
 
 namespace weft::capture {
 namespace {
@@ -19,11 +20,23 @@ std::size_t channel_of(const RawFrame& frame, int x, int y) {
   return static_cast<std::size_t>(frame.cfa.channel_at(x, y));
 }
 
-double share_of(const RawFrame& frame, int x, int y, double count) {
-  const double black =
-      static_cast<double>(frame.black[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)]);
-  return (count - black) / (static_cast<double>(frame.full_at(x, y)) - black);
-}
+/// Shares of the way from black to where channels stop.
+class Range {
+ public:
+  explicit Range(const RawFrame& frame)
+      : frame_(frame), stops_(frame.full == std::array<float, 3>{} ? find_count_stops(frame) : frame.full) {}
+
+  double share_of(int x, int y, double count) const {
+    const double black =
+        static_cast<double>(frame_.black[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)]);
+    const float stop = stops_[channel_of(frame_, x, y)];
+    return (count - black) / (static_cast<double>(stop > 0 ? stop : frame_.white) - black);
+  }
+
+ private:
+  const RawFrame& frame_;
+  std::array<float, 3> stops_;
+};
 
 std::uint16_t believed(const View<const std::uint16_t>& counts, int x, int y) {
   std::uint16_t most = 0;
@@ -60,6 +73,7 @@ double quantile(const Tally& tally, double above) {
 }  // namespace
 
 std::array<RawHistogram, 3> histogram_rgb(const RawFrame& frame) {
+  const Range range(frame);
   std::array<RawHistogram, 3> histograms;
   std::array<std::uint64_t, 3> clipped = {}, all = {};
   for (int y0 = 0; y0 < 2; ++y0) {
@@ -69,7 +83,7 @@ std::array<RawHistogram, 3> histogram_rgb(const RawFrame& frame) {
       const std::size_t c = channel_of(frame, x0, y0);
       for (std::size_t count = 0; count < kLevels; ++count) {
         if (tally[count] == 0) continue;
-        const double share = share_of(frame, x0, y0, static_cast<double>(count));
+        const double share = range.share_of(x0, y0, static_cast<double>(count));
         histograms[c].bins[static_cast<std::size_t>(std::clamp(64 * share, 0.0, 63.0))] += tally[count];
         all[c] += tally[count];
         if (share >= 1) clipped[c] += tally[count];
@@ -83,19 +97,20 @@ std::array<RawHistogram, 3> histogram_rgb(const RawFrame& frame) {
 }
 
 Brightness brightness_of(const RawFrame& frame) {
+  const Range range(frame);
   Brightness brightness;
   for (int y0 = 0; y0 < 2; ++y0) {
     for (int x0 = 0; x0 < 2; ++x0) {
       const Tally tally = tally_of(frame, x0, y0, believed);
       const auto raise = [&](double& most, double above) {
-        most = std::max(most, share_of(frame, x0, y0, quantile(tally, above)));
+        most = std::max(most, range.share_of(x0, y0, quantile(tally, above)));
       };
       raise(brightness.bright, 1e-3);
       raise(brightness.brightest, 1e-5);
       std::uint64_t full = 0, all = 0;
       for (std::size_t count = 0; count < kLevels; ++count) {
         all += tally[count];
-        if (share_of(frame, x0, y0, static_cast<double>(count)) >= kSaturatedFrom) full += tally[count];
+        if (range.share_of(x0, y0, static_cast<double>(count)) >= kSaturatedFrom) full += tally[count];
       }
       brightness.clipped =
           std::max(brightness.clipped,
@@ -103,6 +118,17 @@ Brightness brightness_of(const RawFrame& frame) {
     }
   }
   return brightness;
+}
+
+Brightness TestShotReader::read(RawFrame frame) {
+  if (frame.full == std::array<float, 3>{}) {
+    const std::array<float, 3> shown = find_count_stops(frame);
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (shown[c] > 0) stops_[c] = shown[c];
+    }
+    frame.full = stops_;
+  }
+  return brightness_of(frame);
 }
 
 }  // namespace weft::capture

@@ -273,7 +273,7 @@ class Scan {
     Result<RawFrame> frame = decode_as_calibrated(photograph->file, calibration_);
     if (!frame) return frame.error();
     if (Result<void> cleared = journal_->clear_incoming(); !cleared) return cleared.error();
-    return brightness_of(*frame);
+    return test_shots_.read(std::move(*frame));
   }
 
   Result<Photograph> shoot(const ShotLight& light, const ExposureSettings& exposure,
@@ -582,6 +582,7 @@ class Scan {
   std::vector<DueShot> plan_;
   int frames_resumed_ = 0, frames_wrong_ = 0;
   std::map<int, int> times_wrong_;
+  TestShotReader test_shots_;
   std::vector<std::string> warnings_;
   bool has_room_ = false, is_odd_ = false, is_useless_ = false;
   FramesSoFar so_far_;  ///< away while a frame is on its way

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "capture/raw/decode_raw.h"
+#include "capture/scan/histogram.h"
 #include "capture/scan/scan_plan.h"
 #include "core/base/files.h"
 
@@ -71,14 +72,15 @@ Result<double> Series::metered_us(const std::vector<std::vector<int>>& lights, d
   report_.phase(ScanPhase::kMetering);
   MeterInput input = {{}, {}, shutter_times_us_, start_us};
   for (std::size_t i = 0; i < lights.size(); ++i) input.leds.push_back(static_cast<int>(i) + 1);
+  TestShotReader test_shots;
   const Result<Metering> metering = meter(input, [&](int light, double exposure_us) -> Result<Brightness> {
     const Result<Photograph> photograph =
         shoot({"test", lights[static_cast<std::size_t>(light) - 1], exposure_us});
     if (!photograph) return photograph.error();
-    const Result<RawFrame> frame = decode_raw(photograph->file);
+    Result<RawFrame> frame = decode_raw(photograph->file);
     empty(aside_);
     if (!frame) return frame.error();
-    return brightness_of(*frame);
+    return test_shots.read(std::move(*frame));
   });
   report_.phase(ScanPhase::kExposing);
   if (!metering) return metering.error();

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "core/rig/radiometry.h"
+
 namespace weft {
 namespace {
 
@@ -14,6 +16,7 @@ constexpr double kAbove = 0.01;            // of the pile: that may lie above it
 constexpr std::int64_t kPile = 3;          // times as many as elsewhere
 constexpr double kNearBlack = 0.05;        // of the way from black to white
 constexpr std::int64_t kMostPixels = 4'000'000;
+constexpr StopRules kOneCountOfOne = {.fewest = 1};
 
 /// Samples of levels [from, to], both of the joined range.
 class LevelSums {
@@ -87,7 +90,7 @@ std::optional<double> find_stop(std::span<const TopTally> photographs, const Sto
       if (static_cast<double>(in_one) > rules.most_of_one * static_cast<double>(each.samples)) return {};
       several += in_one >= kFewestInOne ? 1 : 0;
     }
-    if (several > 1) return from;
+    if (several >= rules.fewest) return from;
   }
   return {};
 }
@@ -128,6 +131,19 @@ std::array<float, 3> find_count_stops(std::span<const std::array<TopTally, 3>> m
     for (const auto& each : mosaics) of_channel.push_back(each[c]);
     const std::optional<double> stop = find_stop(of_channel, kCountsStop);
     if (stop && *stop > black + kNearBlack * (white - black)) stops[c] = static_cast<float>(*stop);
+  }
+  return stops;
+}
+
+std::array<float, 3> find_count_stops(const RawFrame& frame) {
+  const std::array<TopTally, 3> tallies = top_tallies(frame);
+  const double black = static_cast<double>(frame.black[0][0]);
+  const double range = static_cast<double>(frame.white) - black;
+  std::array<float, 3> stops = {};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::optional<double> stop = find_stop({&tallies[c], 1}, kOneCountOfOne);
+    if (stop && *stop > black + kNearBlack * range && *stop < black + kSaturatedFrom * range)
+      stops[c] = static_cast<float>(*stop);
   }
   return stops;
 }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kBlack = 600, kWhite = 15520;
 
-/// Red at a quarter of the range, green at half, blue at three quarters.
+/// Red at a quarter of the range, green at half, blue at three quarters; known to be full at white.
 RawFrame three_levels(Size size) {
   RawFrame frame = {Image<std::uint16_t>(size), {}, {{{kBlack, kBlack}, {kBlack, kBlack}}}, kWhite, {}};
   for (int y = 0; y < size.height; ++y) {
@@ -19,6 +19,7 @@ RawFrame three_levels(Size size) {
       frame.counts(x, y) = static_cast<std::uint16_t>(kBlack + share * (kWhite - kBlack) + 1);
     }
   }
+  frame.full = {kWhite, kWhite, kWhite};
   return frame;
 }
 

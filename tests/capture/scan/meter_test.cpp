@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "capture/scan/light_fit.h"
 #include "capture/scan/scan_plan.h"
@@ -40,8 +42,12 @@ struct TestTable {
 
   Brightness shot(int led, double exposure_us) {
     ++shots;
-    return brightness_of(cloth.photograph({{{led, gain[static_cast<std::size_t>(led - 1)]}}, 0}, exposure_us,
-                                          static_cast<std::uint32_t>(shots)));
+    RawFrame frame = cloth.photograph({{{led, gain[static_cast<std::size_t>(led - 1)]}}, 0}, exposure_us,
+                                      static_cast<std::uint32_t>(shots));
+    for (int y = 0; y < frame.counts.height(); ++y)
+      for (int x = 0; x < frame.counts.width(); ++x) frame.counts(x, y) = std::min(frame.counts(x, y), stop);
+    frame.full = full;
+    return reader.read(std::move(frame));
   }
 
   Metering metered() {
@@ -55,6 +61,9 @@ struct TestTable {
   MeterInput input;
   std::vector<double> gain = std::vector<double>(10, 1);
   int shots = 0;
+  std::uint16_t stop = 65535;  ///< of all channels
+  std::array<float, 3> full = {};
+  TestShotReader reader;
 };
 
 double brightest(TestTable& rig, double exposure_us) {
@@ -79,6 +88,19 @@ TEST(Meter, FindsTheSameFromAStartFarOffOnEitherSide) {
     rig.input.start_us = start_us;
     EXPECT_EQ(rig.metered().exposure_us, exposure_us) << "from " << start_us << " us";
   }
+}
+
+TEST(Meter, SeesByItselfWhereACameraStopsBelowWhite) {
+  TestTable known(test::small_scene());
+  known.stop = 12000;
+  known.full = {12000, 12000, 12000};
+  known.input.start_us = 1e6;
+  TestTable unknown(test::small_scene());
+  unknown.stop = 12000;
+  unknown.input.start_us = 1e6;
+  const double exposure_us = unknown.metered().exposure_us;
+  EXPECT_EQ(exposure_us, known.metered().exposure_us);
+  EXPECT_GT(brightest(known, exposure_us), 0.6);
 }
 
 TEST(Meter, NeedsTwoTestShotsWhereTheLightsAreKnown) {

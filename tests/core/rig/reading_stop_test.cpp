@@ -102,6 +102,19 @@ TEST(FindCountStops, FindsNoneInAHighlightOrAtHotPhotosites) {
   EXPECT_EQ(stops(frames), kNowhere) << "12 photosites are no pile";
 }
 
+TEST(FindCountStops, FindsInOneFrameWhereOneCountPilesUpBelowWhite) {
+  const auto of_one = [](const Light& light, int full, int scatter = 0) {
+    return find_count_stops(seen(light, full, 1, scatter));
+  };
+  for (const double times : {1.3, 4.0})
+    EXPECT_EQ(of_one([&](int x, int y) { return times * weave(x, y); }, 15520),
+              (std::array<float, 3>{15520, 15520, 15520}));
+  EXPECT_EQ(of_one([](int x, int y) { return 4 * weave(x, y); }, 16383), kNowhere) << "at white";
+  EXPECT_EQ(of_one(weave, 16383), kNowhere);
+  for (const double counts : {2000.0, 9000.0, 14000.0})
+    EXPECT_EQ(of_one([&](int, int) { return counts; }, 16383), kNowhere) << "paper at " << counts;
+}
+
 TEST(FindCountStops, FindsThePileBelowHotPhotosites) {
   std::vector<RawFrame> frames;
   for (unsigned k = 0; k < 3; ++k) {
