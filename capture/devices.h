@@ -72,6 +72,7 @@ struct Photograph {
   std::optional<std::uint32_t> image_number;  ///< the camera's own count of shots, from the file
   std::optional<double> taken_s;  ///< by the camera's clock, in seconds since 1970 of this machine's clock
   double triggered_s = 0;         ///< since 1970: when it was asked for
+  double waited_s = 0;            ///< from then until the camera had it
   ExposureSettings exposure;      ///< as the file says
 };
 

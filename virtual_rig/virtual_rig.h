@@ -30,11 +30,7 @@ struct VirtualRigOptions {
   bool polariser = false;  ///< and films before LEDs and lens, which it turns
   /// Nobody has calibrated it: its calibration is what a data sheet and a tape say.
   bool bare = false;
-  std::string beside;      ///< another serial device of the host, one of foreign_kinds(); empty: none
-  bool usb = false;        ///< the camera hangs on USB, by the stand-in for libusb; else PTP/IP
-  double away_s = 2;       ///< how long what a fault takes away is away
-  double late_s = 8;       ///< how late a picture is that comes late
-  std::uint16_t port = 0;  ///< of PTP/IP; 0: a free one
+  std::string beside;           ///< another serial device of the host, one of foreign_kinds(); empty: none
   bool usb = false;             ///< the camera hangs on USB, by the stand-in for libusb; else PTP/IP
   double readout_s = 1.0 / 60;  ///< from the first row's exposure to that of the last
   double away_s = 2;            ///< how long what a fault takes away is away

@@ -249,6 +249,7 @@ Result<Photograph> CameraLink::examined(const fs::path& aside, const Json& lande
   photograph.sha256 = fields.text("sha256");
   photograph.bytes = static_cast<std::uint64_t>(fields.number("bytes"));
   photograph.triggered_s = fields.number("triggered_s");
+  photograph.waited_s = fields.number("waited_s");
   if (Result<void> ok = fields.status(); !ok) return wrong_line(ok.error().message());
   const Result<PhotographFacts> facts = read_photograph_facts(aside);
   if (!facts) return facts.error();

@@ -260,6 +260,7 @@ class Worker {
     if (Result<void> released = camera_->trigger(); !released) return std::move(released).error();
     const Result<CameraFileName> name = arrival(triggered, deadline_s);
     if (!name) return name.error();
+    const double waited_s = seconds_since(triggered);
     const Result<FetchedFile> fetched = camera_->fetch(*name);
     if (!fetched) return fetched.error();
     // While the disk is at work, what would hold up the next shot.
@@ -268,6 +269,7 @@ class Worker {
     Result<Json> landed = landing.get();
     if (!landed) return landed;
     (*landed)["triggered_s"] = triggered_s;
+    (*landed)["waited_s"] = waited_s;
     return landed;
   }
 

@@ -17,7 +17,8 @@ namespace weft::capture {
 ///       {"id": 3, "ok": {"exposure_us": [...]}}: rising
 ///   {"id": 4, "do": "take", "file": PATH, "deadline_s": 5.1}
 ///       {"id": 4, "event": "exposed"}: the shutter must have closed, then within the deadline of the release
-///       {"id": 4, "ok": {"file", "sha256", "bytes", "triggered_s"}}: PATH.arrived is whole and synced
+///       {"id": 4, "ok": {"file", "sha256", "bytes", "triggered_s", "waited_s"}}: PATH.arrived is whole and
+///       synced; `waited_s` is from the release until the camera had it
 ///   {"id": 5, "do": "bare", "shots": 10}
 ///       {"id": 5, "ok": {"seconds": [...]}}: of each shot that is thrown away; the yardstick of the
 ///       benchmark

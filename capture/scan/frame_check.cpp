@@ -7,10 +7,13 @@
 #include <utility>
 
 #include "capture/raw/decode_raw.h"
+#include "core/rig/exposure_words.h"
 #include "core/rig/radiometry.h"
 
 namespace weft::capture {
 namespace {
+
+constexpr double kLongExposure_us = 1e6;  // beyond, bodies reduce noise
 
 Error another(std::string why, const Photograph& photograph) {
   return {ErrorKind::kProtocol, "the camera delivered another photograph than was asked for",
@@ -41,6 +44,20 @@ Result<void> check_new(const Photograph& photograph, const std::vector<Shot>& ke
   return Error{ErrorKind::kProtocol, "the camera delivered one photograph twice", where,
                fmt::format("the file is that of {}, byte for byte", same->file),
                "leave the camera alone while it scans, and switch it off and on if this comes again"};
+}
+
+void LongWaits::note(const Photograph& photograph) {
+  const auto waits = [](const Photograph& of) { return of.waited_s / of.exposure.exposure_us; };
+  if (photograph.exposure.exposure_us <= kLongExposure_us) return;
+  if (!quickest_ || waits(photograph) < waits(*quickest_)) quickest_ = photograph;
+}
+
+void LongWaits::warn(std::vector<std::string>& warnings) const {
+  if (!quickest_ || quickest_->waited_s < 2e-6 * quickest_->exposure.exposure_us) return;
+  warnings.push_back(fmt::format(
+      "photographs of {} come after {:.1f} s: the camera seems to reduce the noise of long exposures, which "
+      "takes their time twice; switch that off, the dark shot does its work",
+      exposure_words(quickest_->exposure.exposure_us), quickest_->waited_s));
 }
 
 Result<void> check_alike(const RawFrame& frame, const RawFrame& first, Size first_size,

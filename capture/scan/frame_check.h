@@ -38,6 +38,18 @@ class ImageCount {
 /// Whether none of the shots that are kept has this file, byte for byte: kProtocol names the one that has.
 Result<void> check_new(const Photograph& photograph, const std::vector<Shot>& kept, const std::string& where);
 
+/// Whether a camera takes a dark photograph after each long one, as noise reduction has it: all of them come
+/// after twice their exposure.
+class LongWaits {
+ public:
+  void note(const Photograph& photograph);
+  /// Adds a sentence where it does.
+  void warn(std::vector<std::string>& warnings) const;
+
+ private:
+  std::optional<Photograph> quickest_;  ///< by its exposure
+};
+
 /// Whether frames are of one camera with one setting: size, filters, levels, model, serial number.
 Result<void> check_alike(const RawFrame& frame, const RawFrame& first_without_counts, Size first_size,
                          const std::string& where);

@@ -536,8 +536,7 @@ class Scan {
     set_exposed({clipped, std::min(of_its_time.longest_us(), kMostRoom)}, notes);
   }
 
-  /// Why the first lit frame says that all would be good for nothing. A metered exposure is as good as can
-  /// be.
+  /// Why the first lit frame says that all would be for nothing. A metered exposure is as good as can be.
   std::string useless_words(const DueShot& shot, const Json& notes) const {
     const bool is_first = shot.role == ShotRole::kLit && journal_->session().lit().empty();
     if (!is_first || asked_us_ <= 0 || request_.any_exposure || request_.again) return "";
@@ -547,6 +546,7 @@ class Scan {
   Result<void> finish() {
     report_.phase(ScanPhase::kFinishing);
     warnings_.insert(warnings_.end(), so_far_.warnings.begin(), so_far_.warnings.end());
+    shooter_.long_waits().warn(warnings_);
     const Result<void> done = journal_->finish(warnings_, request_.copy.empty() ? Json() : second_copy());
     // Not among those of the record: its shots say it, and one that is taken again may mend it.
     if (const std::string exposure = exposure_warning(journal_->session()); !exposure.empty())

@@ -236,7 +236,10 @@ Result<Photograph> Shooter::take(const ShotLight& light, const ExposureSettings&
     if (Result<void> go = wait_while_paused(); !go) return go.error();
     if (is_cancelled()) return cancelled("scan");
     Result<Photograph> photograph = take_once(light, exposure, file, is_metering);
-    if (photograph) return photograph;
+    if (photograph) {
+      long_waits_.note(*photograph);
+      return photograph;
+    }
     count_.failed();
     if (!may_pass(photograph.error().kind) || i >= options_.tries_per_shot) {
       (void)lamps_off();

@@ -66,6 +66,7 @@ class Shooter {
   bool is_cancelled() const { return control_.cancel.stop_requested(); }
   bool is_paused() const { return control_.pause != nullptr && control_.pause->load(); }
   int retaken() const { return retaken_; }
+  const LongWaits& long_waits() const { return long_waits_; }
 
  private:
   Result<Photograph> take_once(const ShotLight& light, const ExposureSettings& exposure,
@@ -88,6 +89,7 @@ class Shooter {
   const ScanOptions& options_;
   Report& report_;
   ImageCount count_;
+  LongWaits long_waits_;
   std::optional<ExposureSettings> set_;  ///< what the camera is set to
   std::optional<Polariser> turned_;      ///< how the board has turned the film
   bool lamps_failed_ = false;

@@ -69,7 +69,7 @@ class ScanWithABody : public testing::Test {
     request.fabric = "satin";
     request.rig = file->name;
     request.calibration = file->scan.calibration;
-    request.leds = {1, 2, 3};  // of the scene; the board has ten outputs
+    request.leds = leds_;
     request.exposure = {exposure_us, file->scan.iso, file->scan.f_number};
     request.below = file->below.has_value();
     const auto& states = file->polariser.states;
@@ -104,6 +104,7 @@ class ScanWithABody : public testing::Test {
     return both / std::sqrt(own * taken);
   }
 
+  std::vector<int> leds_ = {1, 2, 3};  // of the scene; the board has ten outputs
   const fs::path folder_ = virtual_rig::fresh_folder();
   std::unique_ptr<virtual_rig::VirtualRig> rig_;
 };
@@ -171,6 +172,16 @@ TEST_F(ScanWithABody, WhoseAutoIsoCannotBeSwitchedOffSaysSoAtTheFirstFrame) {
   EXPECT_EQ(outcome.error().why, "ISO is 400, not 100");
   EXPECT_THAT(outcome.error().remedy, testing::HasSubstr("auto ISO off"));
   EXPECT_EQ(pin_shares(folder_ / "rig" / "exposures.jsonl").size(), 1u) << "no shot was taken again in vain";
+}
+
+TEST_F(ScanWithABody, WhoseNoiseReductionCannotBeSwitchedOffSaysThatItTakesTwice) {
+  start(simulator::Body::kD80);
+  ASSERT_TRUE(rig_->command("camera long_exposure_noise"));
+  ASSERT_TRUE(rig_->command("light dim 1 0.01"));
+  leds_ = {1};
+  const Result<capture::ScanOutcome> outcome = scan(1.3e6);
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_THAT(outcome->warnings, testing::Contains(testing::HasSubstr("takes their time twice")));
 }
 
 TEST_F(ScanWithABody, WhoseRigHasFilmsAndALightBelowTakesAllOfThemAndSolvesTheFirst) {

@@ -4,10 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace weft::capture {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 Photograph photograph(std::uint32_t number, std::optional<double> taken_s = 1000.1) {
   Photograph p;
@@ -63,6 +69,27 @@ TEST(ImageCount, BelievesABodyThatCountsAnewOnlyByItsTime) {
   EXPECT_EQ(objection(count, photograph(4)), "");
   count.connected();
   EXPECT_EQ(objection(count, photograph(1)), "") << "reset in the middle of a scan";
+}
+
+std::vector<std::string> warnings_of(const std::vector<std::pair<double, double>>& exposures_and_waits_s) {
+  LongWaits waits;
+  for (const auto& [exposure_s, waited_s] : exposures_and_waits_s) {
+    Photograph taken;
+    taken.exposure.exposure_us = 1e6 * exposure_s;
+    taken.waited_s = waited_s;
+    waits.note(taken);
+  }
+  std::vector<std::string> warnings;
+  waits.warn(warnings);
+  return warnings;
+}
+
+TEST(LongWaits, TellNoiseReductionByAllLongExposuresThatTakeTwiceTheirTime) {
+  EXPECT_THAT(warnings_of({{2, 4.3}, {2, 4.1}, {4, 9}}),
+              ElementsAre(HasSubstr("photographs of 2 s come after 4.1 s")));
+  EXPECT_THAT(warnings_of({{2, 4.3}, {2, 3.2}}), IsEmpty()) << "a card that was slow once";
+  EXPECT_THAT(warnings_of({{0.5, 1.2}, {1, 2.2}}), IsEmpty()) << "no noise is reduced";
+  EXPECT_THAT(warnings_of({}), IsEmpty());
 }
 
 TEST(FrameCheck, NamesWhatDiffersFromTheFirstFrame) {
