@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kShotBlack = 600, kShotWhite = 15600;
 
-/// A frame of one brightness, a share of the way from black to white.
+/// A frame of one brightness, a share of the way from black to white, where it is known to be full.
 RawFrame even_frame(double share) {
   RawFrame frame;
   frame.counts = Image<std::uint16_t>(Size{96, 72});
@@ -21,6 +21,7 @@ RawFrame even_frame(double share) {
   }
   frame.black = {{{kShotBlack, kShotBlack}, {kShotBlack, kShotBlack}}};
   frame.white = kShotWhite;
+  frame.full.fill(kShotWhite);
   return frame;
 }
 
