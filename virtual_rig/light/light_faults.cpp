@@ -63,9 +63,8 @@ const std::vector<Command>& commands() {
        [](const Arguments& a) { return a.is_share(0); },
        [](LightFaults& f, const Arguments& a) { f.flicker = a.values[0]; }},
       {"pulses", "HERTZ DEPTH DUTY", "500 1 0.6",
-       "the LEDs' driver gives pulses of the same light on average: so many a second, of DUTY of their "
-       "period, "
-       "between which this share of the light is out",
+       "the LEDs' driver gives pulses of the same mean: so many a second, this share of the light out "
+       "between them, each of DUTY of a period",
        3,
        [](const Arguments& a) {
          return a.is_frequency(0) && a.is_share(1) && a.is_share(2) && a.values[2] > 0;

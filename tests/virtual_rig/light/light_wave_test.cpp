@@ -53,7 +53,7 @@ TEST(LightWave, OfNoDepthOrFullDutyIsSteady) {
   EXPECT_NEAR(mean_light({100, 1, 1}, 0.003, 0.004), 1, 1e-12);
 }
 
-CameraExposure exposure_of(double exposure_us, double opened_s) {
+CameraExposure opened_for(double exposure_us, double opened_s) {
   CameraExposure exposure;
   exposure.opened = RigClock::time_point(
       std::chrono::duration_cast<RigClock::duration>(std::chrono::duration<double>(opened_s)));
@@ -76,7 +76,7 @@ std::complex<double> wave_of(const std::vector<double>& light, double period_row
 TEST(LightByRow, HasThePeriodAndTheDepthThatReadoutAndExposureLeaveOfIt) {
   const LightWave wave = {240, 0.4, {}};
   const double exposure_s = 1e-3;
-  const std::vector<double> light = light_by_row(wave, exposure_of(1e6 * exposure_s, 0), 1201);
+  const std::vector<double> light = light_by_row(wave, opened_for(1e6 * exposure_s, 0), 1201);
   const std::complex<double> seen = wave_of(light, 300);
   const double left = std::sin(kPi * 240 * exposure_s) / (kPi * 240 * exposure_s);
   EXPECT_NEAR(std::abs(seen), 0.4 * left, 1e-9);
@@ -87,15 +87,15 @@ TEST(LightByRow, HasThePeriodAndTheDepthThatReadoutAndExposureLeaveOfIt) {
 
 TEST(LightByRow, BeginsWhereTheClockIs) {
   const LightWave wave = {240, 0.4, {}};
-  const std::complex<double> first = wave_of(light_by_row(wave, exposure_of(1000, 5), 1201), 300);
-  const std::complex<double> later = wave_of(light_by_row(wave, exposure_of(1000, 5 + 1.0 / 960), 1201), 300);
+  const std::complex<double> first = wave_of(light_by_row(wave, opened_for(1000, 5), 1201), 300);
+  const std::complex<double> later = wave_of(light_by_row(wave, opened_for(1000, 5 + 1.0 / 960), 1201), 300);
   EXPECT_NEAR(std::arg(later / first), kPi / 2, 1e-4) << "a quarter of a period";
 }
 
 TEST(LightByRow, IsSteadyInAnExposureOfWholePeriodsOrWithoutReadout) {
-  for (const double light : light_by_row({100, 0.9, {}}, exposure_of(20000, 3.21), 96))
+  for (const double light : light_by_row({100, 0.9, {}}, opened_for(20000, 3.21), 96))
     EXPECT_NEAR(light, 1, 1e-12);
-  CameraExposure at_once = exposure_of(1000, 3.21);
+  CameraExposure at_once = opened_for(1000, 3.21);
   at_once.readout_s = 0;
   for (const double light : light_by_row(kPulses, at_once, 96))
     EXPECT_EQ(light, mean_light(kPulses, 3.21, 1e-3));
