@@ -511,7 +511,7 @@ ShotVerdict ScanEvidence::judge_again(const DueShot& shot, const std::vector<dou
     refuse(LightFinding::kChanged,
            fmt::format(
                "{} differs from its first photograph by {:.0f} percent from place to place: the cloth or "
-               "the camera was moved, or another light is on",
+               "the camera was moved, another light is on, or the LEDs flicker",
                name_of(shot), 100 * ratio->scatter));
   } else if (is_repeat && off > kDriftWarns) {
     verdict.doubt = LightFinding::kChanged;
