@@ -94,8 +94,8 @@ class FaultyRig : public testing::Test {
 
 TEST_F(FaultyRig, WhoseDriverGivesPulsesIsSaidToFlickerWithThePeriodOfItsReadout) {
   start();
-  say("light pulses 500 0.3 0.5");  // more, and the repeat may differ by over 5 percent
-  const Json flickers = solve(scan({"--exposure", "1/160"}));  // three periods and an eighth
+  say("light pulses 500 0.6 0.5");  // more, and the repeat may differ by over 5 percent
+  const Json flickers = solve(scan({"--exposure", "1/30"}));  // 16 periods and two thirds
   EXPECT_THAT(names_of(flickers["warnings"]), Contains("ROWS_FLICKER")) << flickers["warnings"];
   EXPECT_NEAR(flickers["conditions"].value("rows_period", 0.0), kRowsOfAPeriod, 0.02 * kRowsOfAPeriod);
 }
