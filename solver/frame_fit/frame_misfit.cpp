@@ -183,17 +183,6 @@ double from_turned(const FrameCells& cells, const CellFit& fit, std::size_t k) {
   });
 }
 
-// Why a photograph fits nothing, as far as it tells.
-void find_cause(const FrameCells& cells, const CellFit& fit, std::size_t k, FrameMisfit& misfit) {
-  constexpr double kSame = 2.5;  // times what the others are missed by
-  const double least = kSame * misfit.typical;
-  for (std::size_t j = 0; j < cells.count; ++j) {
-    if (j != k && from_light(cells, fit, k, j) < least) misfit.lit_by = j;
-    if (j != k && from_photograph(cells, fit, k, j) < least) misfit.same_as = j;
-  }
-  misfit.is_turned = !misfit.same_as && !misfit.lit_by && from_turned(cells, fit, k) < least;
-}
-
 // The photograph that is most like another one.
 struct Twin {
   std::size_t of = 0;
@@ -213,6 +202,23 @@ double typical_difference(const std::vector<Twin>& twins) {
   std::vector<double> all;
   for (const Twin& twin : twins) all.push_back(twin.difference);
   return median(std::move(all));
+}
+
+// Whose photograph one that fits nothing is, as far as that tells.
+void find_cause(const FrameCells& cells, const CellFit& fit, std::size_t k, bool is_turned,
+                FrameMisfit& misfit) {
+  constexpr double kSame = 2.5;  // times what the others are missed by
+  double least = kSame * misfit.typical;
+  const double turned = from_turned(cells, fit, k);
+  misfit.is_turned = is_turned || turned < least;
+  if (misfit.is_turned) least = turned;
+  for (std::size_t j = 0; j < cells.count; ++j) {
+    const double left = from_light(cells, fit, k, j);
+    if (j == k || !(left < least)) continue;
+    least = left;
+    misfit.lit_by = j;
+    misfit.is_turned = false;
+  }
 }
 
 }  // namespace
@@ -269,9 +275,8 @@ std::vector<FrameMisfit> frame_misfits(const FrameCells& cells, const CellFit& f
     if (is_copy || is_turned) misfit.part.reset();
     misfit.fits_nothing = is_copy || is_turned || (!misfit.part && misfit.missed > fits_to);
     if (!misfit.fits_nothing) return;
-    find_cause(cells, fit, k, misfit);
     if (is_copy) misfit.same_as = twin.of;
-    misfit.is_turned = !misfit.same_as && !misfit.lit_by && (misfit.is_turned || is_turned);
+    if (!is_copy) find_cause(cells, fit, k, is_turned, misfit);
     constexpr double kExplained = 0.3;  // of what is missed
     const bool is_told = misfit.same_as || misfit.lit_by || misfit.is_turned;
     misfit.fits_nothing = is_told || !(missed_by_any_light(cells, fit, k) < kExplained * misfit.missed);

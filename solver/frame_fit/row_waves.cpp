@@ -357,6 +357,12 @@ Spectrum spectrum_of(const RowsOf& errors, const Rows& rows, std::size_t most) {
   return spectrum;
 }
 
+// Whether a number of waves is that of a line, or a multiple of it, as far as the window tells.
+bool is_of(double line, double waves) {
+  const double times = std::max(1.0, std::round(waves / line));
+  return std::abs(waves - times * line) < kWidthOfLine;
+}
+
 }  // namespace
 
 std::optional<RowWaves> find_row_waves(const FrameCells& cells, const CellFit& fit,
@@ -375,8 +381,7 @@ std::optional<RowWaves> find_row_waves(const FrameCells& cells, const CellFit& f
     const double rms = std::sqrt(spectrum.powers[number] / static_cast<double>(cells.count));
     if (spectrum.powers[number] < kWaveFrom_sigmas * kWaveFrom_sigmas * spectrum.floor || rms < kLeastWave)
       break;
-    if (waves < kFewestWaves ||
-        std::ranges::any_of(weave, [&](double line) { return std::abs(waves - line) < kWidthOfLine; }))
+    if (waves < kFewestWaves || std::ranges::any_of(weave, [&](double line) { return is_of(line, waves); }))
       continue;
     const InLight in_light = cloth.of(waves);
     if (in_light.is_weave()) {

@@ -97,7 +97,8 @@ TEST_F(FaultyRig, WhoseDriverGivesPulsesIsSaidToFlickerWithThePeriodOfItsReadout
   say("light pulses 500 0.6 0.5");  // more, and the repeat may differ by over 5 percent
   const Json flickers = solve(scan({"--exposure", "1/30"}));  // 16 periods and two thirds
   EXPECT_THAT(names_of(flickers["warnings"]), Contains("ROWS_FLICKER")) << flickers["warnings"];
-  EXPECT_NEAR(flickers["conditions"].value("rows_period", 0.0), kRowsOfAPeriod, 0.02 * kRowsOfAPeriod);
+  EXPECT_NEAR(flickers["conditions"].value("/flicker/period_rows"_json_pointer, 0.0), kRowsOfAPeriod,
+              0.02 * kRowsOfAPeriod);
 }
 
 TEST_F(FaultyRig, ShowsNothingOfPulsesInAnExposureOfWholePeriods) {

@@ -18,8 +18,10 @@ constexpr int kColumns = 32, kRows = 120;
 constexpr std::size_t kLights = 10;
 constexpr double kNoise = 0.004;
 
-// Smooth waves of albedo 0.3 to 0.5 and slopes up to 0.3 under two rings of five lights, with noise.
-FrameCells waves_of_cloth() {
+// Cloth of albedo 0.3 to 0.5 under two rings of five lights, with noise; `gloss` is of a lobe seen from
+// above.
+template <typename NormalAt>
+FrameCells cloth_with(const NormalAt& normal_at, double gloss) {
   FrameCells cells;
   cells.columns = kColumns;
   cells.rows = kRows;
@@ -28,8 +30,7 @@ FrameCells waves_of_cloth() {
   std::normal_distribution<double> noise(0, kNoise);
   for (int y = 0; y < kRows; ++y) {
     for (int x = 0; x < kColumns; ++x) {
-      const Vec3 normal =
-          normalized({0.3 * std::sin(1.3 * x + 0.4 * y), 0.3 * std::cos(0.9 * y - 0.5 * x), 1});
+      const Vec3 normal = normalized(normal_at(x, y));
       const double albedo = 0.4 + 0.1 * std::sin(0.37 * x * y);
       for (std::size_t k = 0; k < kLights; ++k) {
         const double turn = 2 * kPi * static_cast<double>(k % 5) / 5 + (k < 5 ? 0 : 0.6);
@@ -38,12 +39,22 @@ FrameCells waves_of_cloth() {
                             std::sin(height)};
         cells.direction.push_back(light);
         cells.strength.push_back(k < 5 ? 1.0F : 1.4F);
+        const double lobe = gloss * std::pow(dot(normal, normalized(light + Vec3{0, 0, 1})), 30);
         cells.value.push_back(
-            static_cast<float>(albedo * (std::max(0.0, dot(normal, light)) + noise(random))));
+            static_cast<float>(albedo * (std::max(0.0, dot(normal, light)) + noise(random)) + lobe));
       }
     }
   }
   return cells;
+}
+
+// Smooth waves with slopes up to 0.3.
+FrameCells waves_of_cloth(double gloss = 0) {
+  return cloth_with(
+      [](int x, int y) {
+        return Vec3{0.3 * std::sin(1.3 * x + 0.4 * y), 0.3 * std::cos(0.9 * y - 0.5 * x), 1};
+      },
+      gloss);
 }
 
 template <typename Change>
@@ -132,6 +143,26 @@ TEST(FrameFit, NamesAPhotographThatFitsNothingAndWhy) {
   for (std::size_t k = 0; k < kLights; ++k) EXPECT_EQ(turned[k].fits_nothing, k == 3) << k;
 }
 
+TEST(FrameFit, NamesACopyAndATurnedPhotographOfClothThatNothingFits) {
+  const FrameCells right = waves_of_cloth(0.5);
+  const std::vector<FrameMisfit> clean = frame_misfits(right, fit_cells(right, 1), 1);
+  for (std::size_t k = 0; k < kLights; ++k) EXPECT_FALSE(clean[k].is_wrong()) << k << ": " << clean[k].missed;
+  ASSERT_GT(clean[0].typical, kMissedFrom) << "it shines";
+  const auto at = [&](int x, int y, std::size_t k) {
+    return static_cast<double>(right.value[static_cast<std::size_t>(y * kColumns + x) * kLights + k]);
+  };
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 0.4 * kNoise);
+  const FrameCells copy =
+      changed(right, 3, [&](int x, int y, double) { return at(x, y, 4) + noise(random); });
+  const FrameMisfit copied = frame_misfits(copy, fit_cells(copy, 1), 1)[3];
+  EXPECT_TRUE(copied.fits_nothing) << copied.missed << " of " << copied.typical;
+  EXPECT_EQ(copied.same_as, 4U);
+  const FrameCells turn =
+      changed(right, 3, [&](int x, int y, double) { return at(kColumns - 1 - x, kRows - 1 - y, 3); });
+  EXPECT_TRUE(frame_misfits(turn, fit_cells(turn, 1), 1)[3].is_turned);
+}
+
 TEST(FrameFit, NamesThePartThatAHandHides) {
   const FrameCells cells = changed(waves_of_cloth(), 6, [](int x, int y, double value) {
     return x < 12 && y >= 80 ? 0.2 * value : value;
@@ -170,6 +201,19 @@ TEST(FrameFit, EvensOutLightThatFlickersAlongRows) {
   const double before = change_of(truth, fit).turned_deg,
                after = change_of(truth, fit_cells(even, 1)).turned_deg;
   EXPECT_LT(after, 0.3 * before) << before << " degrees before, " << after << " after";
+}
+
+// Yarns along the rows shine, each alike from end to end.
+TEST(FrameFit, TakesNoWeaveAlongTheRowsForFlicker) {
+  constexpr double kPitch = 9;
+  const FrameCells cells = cloth_with(
+      [](int x, int y) {
+        return Vec3{0.1 * std::sin(1.3 * x), 0.35 * std::sin(2 * kPi * y / kPitch), 1};
+      },
+      0.2);
+  const CellFit fit = fit_cells(cells, 1);
+  const std::optional<RowWaves> waves = find_row_waves(cells, fit, {}, 1);
+  EXPECT_FALSE(waves) << "a period of " << waves->period_rows << " rows";
 }
 
 }  // namespace
