@@ -18,9 +18,7 @@
 #include "core/base/percent.h"
 #include "core/base/statistics.h"
 #include "core/rig/dark_counts.h"
-#include "core/rig/exposure_words.h"
 #include "core/rig/radiometry.h"
-#include "core/rig/same_camera.h"
 #include "solve/conditions/frame_words.h"
 #include "solve/photographs/cell_noise.h"
 #include "solve/photographs/spread_cells.h"
@@ -127,7 +125,6 @@ class DarkShot {
         black_(black_counts(mosaics_.frames.front(), mosaics_.response)) {}
 
   void question() {
-    if (is_exposed_otherwise()) set_aside_for_its_exposure();
     const DarkLight light = mosaics_.dark ? light_of(mosaics_, black_) : DarkLight();
     const Look before = look_at(photographs_, threads_);
     if (is_lit(light) && set_aside(before, light)) return;
@@ -139,27 +136,6 @@ class DarkShot {
     constexpr double kLeastShare = 0.003, kLeast_sigmas = 8;
     return std::abs(light.bright) > kDarkWarns ||
            (light.share > kLeastShare && light.share > kLeast_sigmas * light.sigma);
-  }
-
-  bool is_exposed_otherwise() const {
-    const std::optional<Shot>& dark = exposures_.plan.dark;
-    const Shot& lit = exposures_.plan.lit.front();
-    return mosaics_.dark && dark &&
-           !(same_setting(dark->exposure_us, lit.exposure_us) && same_setting(dark->iso, lit.iso));
-  }
-
-  void set_aside_for_its_exposure() {
-    const solver::CellFit before = look_at(photographs_, threads_).fit;
-    mosaics_.set_dark(without_light(*mosaics_.dark, black_));
-    const solver::CellChange change = solver::change_of(look_at(photographs_, threads_).fit, before);
-    const Shot &dark = *exposures_.plan.dark, &lit = exposures_.plan.lit.front();
-    say({"DARK_SHOT",
-         fmt::format(
-             "The dark shot was exposed for {} at ISO {:g} and the frames for {} at ISO {:g}, which {}; "
-             "the black level stands in its place",
-             exposure_words(dark.exposure_us), dark.iso, exposure_words(lit.exposure_us), lit.iso,
-             words_of(change)),
-         "expose it as the frames; " + again()});
   }
 
   // A dark shot can have too much light only where it is seen to have some.

@@ -22,9 +22,9 @@ constexpr std::size_t kFewestRows = 24;
 constexpr double kFewestWaves = 2, kShortestPeriod = 3;  // over the frame; rows of cells
 constexpr double kWaveWide = 5;                          // sigma; beyond, an error counts as that much
 constexpr double kWaveFrom_sigmas = 8;
-// Of a wave's power in each column, that which all columns share.
+// What all columns share of a wave, of its power in each.
 constexpr double kLeastAlike = 0.88, kLeastAlikeBeyondCloth = 0.75;
-constexpr double kWidthOfLine = 2.5;  // of waves over the frame, by the window
+constexpr double kWidthOfLine = 2.5;  // waves over the frame, by the window
 constexpr std::size_t kMostTried = 24;
 constexpr int kMostHarmonics = 9;
 constexpr std::size_t kFewestLitCells = 4;  // cells of a row

@@ -399,37 +399,6 @@ TEST_F(Conditions, ALedThatDidNotLightIsLeftOutByName) {
   EXPECT_LT(after, 1.5 * before) << before << " with all LEDs, " << after << " with nine";
 }
 
-TEST_F(Conditions, ADarkShotOfAnotherExposureIsSetAside) {
-  simulator::Scene scene = scene_named("golden", {96, 64});
-  scene.effects.ambient = true;
-  scene.lights.ambient = 0.05;
-  simulate(scene, session_);
-  edit_session([&](Json& s) {
-    for (Json& shot : s["shots"]) {
-      if (shot["role"] != "dark") continue;
-      RawFrame frame = need(capture::decode_raw(dark()));
-      frame.shot.exposure_us *= 4;
-      for (int y = 0; y < frame.counts.height(); ++y) {
-        for (int x = 0; x < frame.counts.width(); ++x) {
-          const auto black = static_cast<int>(frame.black[0][0]);
-          frame.counts(x, y) = static_cast<std::uint16_t>(black + 4 * (frame.counts(x, y) - black));
-        }
-      }
-      EXPECT_TRUE(simulator::write_dng(dark(), frame));
-      shot["exposure_us"] = frame.shot.exposure_us;
-      shot["sha256"] = *sha256_of_file(dark());
-    }
-  });
-  solve::SolvePlan plan = need(solve::plan_session({session_, {}, {}}));
-  plan.asks_frames = true;
-  const solve::Photographs loaded = need(solve::load_photographs(plan, {}));
-  const auto& said = loaded.conditions.of_frames;
-  ASSERT_EQ(said.size(), 2U);
-  EXPECT_EQ(said[0].name, "DARK_SHOT");
-  EXPECT_THAT(said[0].text, HasSubstr("exposed for"));
-  EXPECT_EQ(said[1].name, "ROOM_LIGHT") << said[1].text;
-}
-
 TEST_F(Conditions, ALedThatSaturatesEverythingIsLeftOutByName) {
   simulate(scene_named("golden", {48, 32}), session_);
   change_raw(1, [](RawFrame& frame) {
