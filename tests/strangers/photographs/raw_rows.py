@@ -65,6 +65,9 @@ ROWS = [
     raws('one without its last row', refused(65, 'raw04.dng'), taken(then=lambda d: cut(d / 'raw04.dng', 0.98))),
     raws('an empty one', refused(65, 'raw04.dng'), taken(then=lambda d: cut(d / 'raw04.dng', 0))),
     raws('one twice', refused(65, 'raw02.dng'), taken(then=lambda d: shutil.copy(d / 'raw02.dng', d / 'raw05.dng'))),
+    raws('one under another lamp', right(1.5, 'photograph 5 (raw05.dng) fits none', 'photograph 2 (raw02.dng)',
+                                         'it was left out', truth=truth),
+         taken(then=lambda d: (d / 'raw05.dng').write_bytes((d / 'raw02.dng').read_bytes() + b'\0'))),
     raws('a JPEG under the name of one', refused(65, 'mix'), taken(then=lambda d: jpeg()(d / 'raw04.dng', IMAGES[0]))),
     raws('a raw of another body', refused(65, 'cr3'), taken(then=lambda d: (d / 'lights.lp').write_text(
         (d / 'lights.lp').read_text().replace('raw04.dng', 'raw04.cr3'))
