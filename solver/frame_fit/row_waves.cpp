@@ -193,7 +193,8 @@ class LightOfCloth {
       Vec3 sum;
       for (std::size_t cell = 0; cell < cells.cells(); ++cell)
         sum = sum + cells.direction[cell * cells.count + k];
-      cloth.row(static_cast<Eigen::Index>(k)) << 1, sum.x / sum.z, sum.y / sum.z;
+      const double height = std::max(sum.z, kLeastHeight * static_cast<double>(cells.cells()));
+      cloth.row(static_cast<Eigen::Index>(k)) << 1, sum.x / height, sum.y / height;
     }
     explains_ = cloth * (cloth.transpose() * cloth).completeOrthogonalDecomposition().pseudoInverse() *
                 cloth.transpose();
@@ -245,6 +246,7 @@ class LightOfCloth {
   }
 
   static constexpr Eigen::Index kClothTerms = 3;
+  static constexpr double kLeastHeight = 0.01;  // of a light over the table
 
   RowsOf light_;
   const Rows& rows_;

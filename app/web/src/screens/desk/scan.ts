@@ -42,13 +42,18 @@ export async function shootAgain(session: string, index: number, exposure_us: nu
   await withDevicesFree(() => answer(api.POST('/api/v1/sessions/{name}/frames/{index}/again', {params: {path}, body: {exposure_us}})));
 }
 
+let last = '';
+
+/** What comes late of a scan before the last one is not shown any more. */
 async function fetchScanned(name: string): Promise<void> {
-  scanned.value = await answer(api.GET('/api/v1/sessions/{name}', {params: {path: {name}}}));
+  const session = await answer(api.GET('/api/v1/sessions/{name}', {params: {path: {name}}}));
+  if (name === last) scanned.value = session;
 }
 
 async function show(session: string): Promise<void> {
+  last = session;
   await fetchScanned(session).catch(() => {});
-  showsScanned.value = scanned.value?.name === session;
+  if (session === last) showsScanned.value = scanned.value?.name === session;
 }
 
 /** Histograms are counted after the scan: asked for until all are there. */
