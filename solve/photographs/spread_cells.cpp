@@ -16,13 +16,13 @@ constexpr int kRowsAtATime = 16;  // of cells
 constexpr int kGreen = 1;
 
 // The mean of a cell's greens; infinity where one is full, NaN where one is missing.
-float green_of(View<const float> plane, const Planes& planes, int x, int y, int frame_y) {
+float green_of(View<const float> plane, const Planes& planes, int y, int frame_y) {
   float sum = 0;
   int sites = 0;
   for (int j = 0; j < kCellSide; ++j) {
     for (int i = 0; i < kCellSide; ++i) {
-      if (planes.count == 1 && planes.cfa.channel_at(x + i, frame_y + j) != kGreen) continue;
-      sum += plane(x + i, y + j);
+      if (planes.count == 1 && planes.cfa.channel_at(i, frame_y + j) != kGreen) continue;
+      sum += plane(i, y + j);
       ++sites;
     }
   }
@@ -55,19 +55,18 @@ solver::FrameCells spread_cells(const Photographs& photographs, int threads) {
   const int bands = (cells.rows + kRowsAtATime - 1) / kRowsAtATime;
   parallel_for(static_cast<std::size_t>(bands), threads, [&](std::size_t band, int) {
     const int from = static_cast<int>(band) * kRowsAtATime, to = std::min(from + kRowsAtATime, cells.rows);
-    const Rect part = {0, kCellSide * from, photographs.size.width, kCellSide * to};
-    Image<float> scratch({part.width(), part.height()});
+    Image<float> scratch({kCellSide, kCellSide * (to - from)});
     for (std::size_t k = 0; k < cells.count; ++k) {
-      const auto views = readings_of(photographs.frames, k, part, scratch.plane());
-      const View<const float> plane = views[planes.count == 1 ? 0 : kGreen];
-      for (int row = from; row < to; ++row) {
-        for (int i = 0; i < cells.columns; ++i) {
-          const int x = columns[static_cast<std::size_t>(i)], y = kCellSide * row;
-          const std::size_t at =
-              (static_cast<std::size_t>(row) * columns.size() + static_cast<std::size_t>(i)) * cells.count +
-              k;
+      for (int i = 0; i < cells.columns; ++i) {
+        const int x = columns[static_cast<std::size_t>(i)];
+        const Rect part = {x, kCellSide * from, x + kCellSide, kCellSide * to};
+        const auto views = readings_of(photographs.frames, k, part, scratch.plane());
+        const View<const float> plane = views[planes.count == 1 ? 0 : kGreen];
+        for (int row = from; row < to; ++row) {
+          const int y = kCellSide * row;
+          const std::size_t at = cells.cell_at(i, row) * cells.count + k;
           const LightField::Light light = photographs.field->at(k, kGreen, x, y);
-          const float reading = green_of(plane, planes, x, y - part.y0, y);
+          const float reading = green_of(plane, planes, y - part.y0, y);
           const auto strength = static_cast<float>(light.strength);
           const bool is_there = strength > 0 && std::isfinite(reading);
           cells.value[at] = is_there ? reading / strength : std::numeric_limits<float>::quiet_NaN();

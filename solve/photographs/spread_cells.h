@@ -9,8 +9,7 @@ namespace weft::solve {
 /// Pixels of a filter cell, a side; cells lie below each other without a gap.
 inline constexpr int kCellSide = 2;
 
-/// Green readings of filter cells at up to 64 columns of the frame, in all rows. Costs one look at every
-/// reading of a mosaic.
+/// Green readings of filter cells at up to 64 columns of the frame, in all rows.
 solver::FrameCells spread_cells(const Photographs& photographs, int threads);
 
 /// The first pixel of each of their columns.
