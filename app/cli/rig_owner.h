@@ -25,7 +25,7 @@ struct ReachedRig {
 /// `owner`: as address_of_owner() says.
 Result<ReachedRig> reach_rig(capture::Rig rig, const std::optional<std::string>& owner);
 
-/// "firmware 1.0, 10 LEDs, began by power".
+/// "firmware 1.0, 10 LEDs, began from power-on", and what to do about a board of older firmware at that port.
 std::string words_of(const capture::BoardFacts& facts, const std::string& port);
 
 }  // namespace weft::app

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "calibration/response/block_light.h"
+#include "core/rig/dark_counts.h"
 #include "core/rig/radiometry.h"
 
 namespace weft::calibration {
@@ -98,9 +99,8 @@ Error cannot_fit(std::string why, std::string remedy) {
 std::vector<TransferPoint> transfer_points(const RawFrame& first, const RawFrame& second,
                                            View<const std::uint8_t> bad) {
   const Size size = first.counts.size();
-  double mean_black = 0;
-  for (const auto& row : first.black) mean_black += static_cast<double>(row[0] + row[1]) / 4;
-  const double white = static_cast<double>(first.white), range = white - mean_black;
+  const double file_black = mean_black(first);
+  const double white = static_cast<double>(first.white), range = white - file_black;
   std::array<double, 4> full;  // by place in the filter cell
   for (int place = 0; place < 4; ++place)
     full[static_cast<std::size_t>(place)] = saturated_from(first, place & 1, place >> 1);

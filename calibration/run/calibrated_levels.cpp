@@ -6,14 +6,15 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/rig/dark_counts.h"
+
 namespace weft::calibration {
 
 Result<void> check_levels(const RawFrame& frame, const Response& response,
                           const std::filesystem::path& file) {
   constexpr double kSameRange = 0.005;  // relative
   if (!response.levels) return {};
-  double black = 0;
-  for (const auto& row : frame.black) black += static_cast<double>(row[0] + row[1]) / 4;
+  const double black = mean_black(frame);
   const auto& blacks = response.levels->black;
   const double measured_black = std::accumulate(blacks.begin(), blacks.end(), 0.0) / 4;
   const double range = static_cast<double>(frame.white) - black;

@@ -10,6 +10,13 @@ namespace weft {
 /// Light in a dark shot that is spoken of: of its brighter tenth, a share of full scale.
 inline constexpr double kDarkWarns = 0.004;
 
+/// What a frame's file calls black, the mean of its filter cell.
+inline double mean_black(const RawFrame& frame) {
+  double mean = 0;
+  for (const auto& row : frame.black) mean += static_cast<double>(row[0] + row[1]) / 4;
+  return mean;
+}
+
 /// Where the counts of a dark shot lie.
 struct DarkCounts {
   std::array<double, 3> median = {};  ///< red, green, blue

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "core/rig/dark_counts.h"
 #include "core/rig/same_camera.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -70,9 +71,7 @@ HWY_EXPORT(read_row);
 std::array<std::array<float, 2>, 2> black_counts(const RawFrame& like, const Response& response) {
   std::array<std::array<float, 2>, 2> black = like.black;
   if (!response.black_counts) return black;
-  double mean = 0;
-  for (const auto& row : like.black) mean += static_cast<double>(row[0] + row[1]) / 4;
-  const auto offset = static_cast<float>(*response.black_counts - mean);
+  const auto offset = static_cast<float>(*response.black_counts - mean_black(like));
   for (auto& row : black) {
     for (float& level : row) level += offset;
   }

@@ -30,14 +30,8 @@ double mean_of(const auto& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-double black_of(const RawFrame& frame) {
-  double mean = 0;
-  for (const auto& row : frame.black) mean += static_cast<double>(row[0] + row[1]) / 4;
-  return mean;
-}
-
 double range_of(const RawFrame& frame) {
-  return static_cast<double>(frame.white) - black_of(frame);
+  return static_cast<double>(frame.white) - mean_black(frame);
 }
 
 // The power of two that a level is of another.
@@ -63,7 +57,7 @@ class Levels {
       if (!has_dark || k != lit) tallies[k] = top_tallies(frames[k]);
     });
     stops_ = find_count_stops(tallies, frames.front());
-    far_above_ = share_above(tallies, black_of(like()) + kFarAbove * range_of(like()));
+    far_above_ = share_above(tallies, mean_black(like()) + kFarAbove * range_of(like()));
   }
 
   Result<SettledLevels> settle() {
@@ -73,11 +67,11 @@ class Levels {
     } else if (calibrated == nullptr && far_above_ > kShareFarAbove) {
       return far_above();
     } else if (calibrated == nullptr && dark_ &&
-               std::abs(*dark_ - black_of(like())) > kOffBlack * range_of(like())) {
+               std::abs(*dark_ - mean_black(like())) > kOffBlack * range_of(like())) {
       said_.push_back(
           fmt::format("the dark shot reads {:.0f} counts, the files call {:.0f} black: {:.0f} is taken",
-                      *dark_, black_of(like()), *dark_));
-      const auto off = static_cast<float>(*dark_ - black_of(like()));
+                      *dark_, mean_black(like()), *dark_));
+      const auto off = static_cast<float>(*dark_ - mean_black(like()));
       for (RawFrame& frame : frames_)
         for (auto& row : frame.black)
           for (float& black : row) black += off;
@@ -117,10 +111,10 @@ class Levels {
     if (dark_)
       if (const auto scale = doublings(*dark_, dark)) return scale;
     if (!dark_)
-      if (const auto scale = doublings(black_of(like()), mean_of(calibrated.black))) return scale;
+      if (const auto scale = doublings(mean_black(like()), mean_of(calibrated.black))) return scale;
     for (std::size_t c = 0; c < calibrated.full_rgb.size(); ++c) {
       if (stops_[c] == 0 || calibrated.full_rgb[c] == 0) continue;
-      const double here = static_cast<double>(stops_[c]) - dark_.value_or(black_of(like()));
+      const double here = static_cast<double>(stops_[c]) - dark_.value_or(mean_black(like()));
       if (const auto scale = doublings(here, calibrated.full_rgb[c] - dark)) return scale;
     }
     return {};
@@ -135,7 +129,7 @@ class Levels {
       return refusal(
           fmt::format("they call {:.0f} black and {:.0f} white, those of the calibration {:.0f} and {:.0f}, "
                       "and no dark shot tells how their counts compare",
-                      black_of(like()), like().white, black, calibrated.white));
+                      mean_black(like()), like().white, black, calibrated.white));
     }
     // A converter may have taken black away.
     const double dark = mean_of(calibrated.dark_rgb);
@@ -143,7 +137,7 @@ class Levels {
     said_.push_back(
         fmt::format("the files call {:.0f} black and {:.0f} white, their counts are the calibration's{}: "
                     "{:.0f} and {:.0f} are taken",
-                    black_of(like()), like().white, *scale == 1 ? "" : fmt::format(" times {:g}", *scale),
+                    mean_black(like()), like().white, *scale == 1 ? "" : fmt::format(" times {:g}", *scale),
                     zero, zero + *scale * range));
     for (RawFrame& frame : frames_) {
       for (std::size_t i = 0; i < 4; ++i)
@@ -162,7 +156,7 @@ class Levels {
     constexpr std::array<const char*, 3> kNames = {"red", "green", "blue"};
     std::vector<std::string> stop_at;
     for (std::size_t c = 0; c < 3; ++c) {
-      const double limit = black_of(like()) + kSaturatedFrom * range_of(like());
+      const double limit = mean_black(like()) + kSaturatedFrom * range_of(like());
       if (full_[c] > 0 || stops_[c] == 0 || static_cast<double>(stops_[c]) > limit) continue;
       full_[c] = stops_[c];
       stop_at.push_back(fmt::format("{} at {:.0f}", kNames[c], stops_[c]));

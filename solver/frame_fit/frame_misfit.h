@@ -30,7 +30,9 @@ struct FrameMisfit {
 };
 
 /// A photograph that fits nothing is missed by this share at least, and by so many times as much as the
-/// others are: the second where these are missed by over 0.03, as cloth that shines is.
+/// others are: the second where these are missed by over 0.03, as cloth that shines is. Nearer than that a
+/// copy is told where it is missed by more than the photograph that it shows and is far more like it than
+/// others are like any; a turned one where what is predicted fits it better turned.
 inline constexpr double kMissedFrom = 0.03, kMissedTimes = 2.2, kMissedTimesOfGloss = 4;
 
 /// Each photograph's. Nothing is said of fewer than six.

@@ -184,6 +184,7 @@ struct InLight {
   static constexpr double kOfCloth = 0.5, kMostNear = 0.4;
 };
 
+// The light of rows, and what of it one albedo and one tilt a row would explain.
 class LightOfCloth {
  public:
   LightOfCloth(const FrameCells& cells, const CellFit& fit, const Rows& rows)

@@ -17,12 +17,16 @@ struct RowWaves {
   double sigma = 0;               ///< of an amplitude, by waves of other periods
   /// By photograph: its light over its mean, row by row of cells. Empty of one that does not flicker.
   std::vector<std::vector<float>> gain;
-  bool are_even = false;  ///< whether what is divided by them has the waves no more, but a half at most
+  /// Whether what is divided by them has the waves no more, and cloth has too little of near periods to hide
+  /// what lamps have.
+  bool are_even = false;
 };
 
-/// Looks for one period in errors that are the same in all columns: a weave's differ from column to column.
-/// Periods of 3 rows of cells to a half of the frame are looked for. None where nothing is above kLeastWave
-/// and its sigma. Photographs that are `strangers` to the others are not looked at.
+/// Looks for one period in errors that are the same in all columns: a weave's differ from column to column,
+/// or lie in what albedo and tilt explain of the light of rows, and its multiples with it. Light that goes in
+/// step with yarns is not told from them. Periods of 3 rows of cells to a half of the frame are looked for.
+/// None where nothing is above kLeastWave and its sigma. Photographs that are `strangers` to the others are
+/// not looked at.
 inline constexpr double kLeastWave = 0.002;
 std::optional<RowWaves> find_row_waves(const FrameCells& cells, const CellFit& fit,
                                        std::span<const std::size_t> strangers, int threads);
