@@ -124,7 +124,7 @@ def tried(row, program, folder):
             return f'{" ".join(arguments)}: exit code {seen.code}: {first_line(seen.text)}'
     if row.after:
         row.after(folder)
-    earlier = listing(folder)
+    earlier = None if row.is_written else listing(folder)
     seen = run_weft(program, row.run, folder, row.as_nobody)
     if seen.code not in (0, 64, 65, 66):
         return f'exit code {seen.code}: {first_line(seen.text)}'
