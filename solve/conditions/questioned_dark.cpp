@@ -29,7 +29,9 @@ namespace weft::solve {
 namespace {
 
 constexpr double kBrighter = 0.9;  // of the dark shot's sites, in the order of their light
-constexpr int kStep = 7;           // sites that are looked at; odd: of every colour
+constexpr double kBlackErs =
+    1e-4;                 // of full scale: a dark shot without light may lie so far beside its level
+constexpr int kStep = 7;  // sites that are looked at; odd: of every colour
 
 using Cell = std::array<std::array<float, 2>, 2>;
 
@@ -40,6 +42,7 @@ double level_at(const Cell& black, int x, int y) {
 // How a dark shot follows the mean light of the frames, site by site: level + share * light.
 struct DarkLight {
   double share = 0, sigma = 0;  // of their light
+  double above = 0;             // of it, what lies above the black level, in step with it or not
   double bright = 0;            // its brighter tenth, of full scale above black
 };
 
@@ -61,8 +64,9 @@ DarkLight light_of(const Mosaics& mosaics, const Cell& black) {
   }
   DarkLight found;
   found.bright = quantile(std::move(light), kBrighter);
+  found.above = std::max(0.0, y_sum - kBlackErs * static_cast<double>(dark.white) * n) / x_sum;
   const double spread = xx - x_sum * x_sum / n, both = xy - x_sum * y_sum / n, rest = yy - y_sum * y_sum / n;
-  if (!(spread > 0) || n < 10) return {0, 1, found.bright};
+  if (!(spread > 0) || n < 10) return {0, 1, 0, found.bright};
   found.share = both / spread;
   found.sigma = std::sqrt(std::max(0.0, rest - found.share * both) / (n - 2) / spread);
   return found;
@@ -127,7 +131,7 @@ class DarkShot {
   void question() {
     const DarkLight light = mosaics_.dark ? light_of(mosaics_, black_) : DarkLight();
     const Look before = look_at(photographs_, threads_);
-    if (is_lit(light) && set_aside(before, light)) return;
+    if ((is_lit(light) || is_missed(light, before.room)) && set_aside(before, light)) return;
     if (before.room.is_told() && (before.room.share > 0 || explains(light, before.room))) take_off(before);
   }
 
@@ -142,6 +146,12 @@ class DarkShot {
   static bool explains(const DarkLight& light, const solver::RoomShare& room) {
     constexpr double kMostOf = 0.5;
     return is_lit(light) && light.share > kMostOf * std::abs(room.share);
+  }
+
+  // A dark shot above black whose frames lack about as much light.
+  static bool is_missed(const DarkLight& light, const solver::RoomShare& room) {
+    constexpr double kLeastAbove = 0.003, kMostTimes = 3;
+    return light.above > kLeastAbove && room.alone < 0 && -room.alone < kMostTimes * light.above;
   }
 
   // Whether the frames fit better without the light of the dark shot: that they lack it.

@@ -10,6 +10,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/statistics.h"
+#include "solver/frame_fit/tilt_law.h"
 
 namespace weft::solver {
 namespace {
@@ -86,10 +87,27 @@ std::vector<double> by_blocks(const FrameCells& cells, const std::vector<float>&
   return medians;
 }
 
-// The largest part of blocks that touch and do not fit.
-std::vector<std::size_t> largest_part(const std::vector<double>& blocks, double from) {
+// The same where a cell's light is any function of how it leans, one for the whole frame.
+std::vector<double> blocks_by_tilt(const FrameCells& cells, const CellFit& fit, std::size_t k) {
+  return by_blocks(cells, errors_by_tilt(cells, fit, k, {1, 1}));
+}
+
+// The median of what photographs are missed by.
+double typical_of(const std::vector<FrameMisfit>& misfits) {
+  std::vector<double> all;
+  for (const FrameMisfit& misfit : misfits) {
+    if (std::isfinite(misfit.missed)) all.push_back(misfit.missed);
+  }
+  return median(std::move(all));
+}
+
+// The largest part of blocks that touch and are too dark. Too bright is a highlight, but in a photograph that
+// lacks light of most of its frame.
+std::vector<std::size_t> largest_part(const std::vector<double>& blocks, double from, double gain) {
+  constexpr double kLacksLight = 0.6;
   std::vector<bool> is_off(blocks.size());
-  for (std::size_t i = 0; i < blocks.size(); ++i) is_off[i] = std::abs(blocks[i]) > from;
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    is_off[i] = gain < kLacksLight ? std::abs(blocks[i]) > from : blocks[i] < -from;
   std::vector<std::size_t> largest;
   for (std::size_t start = 0; start < blocks.size(); ++start) {
     std::vector<std::size_t> part;
@@ -165,6 +183,36 @@ double missed_by_any_light(const FrameCells& cells, const CellFit& fit, std::siz
   return median(std::move(left));
 }
 
+// What it is missed by if its light is any function of how a cell leans, as the other photographs tell that;
+// and the same of it turned by half.
+struct AnyLobe {
+  double missed = 0, missed_turned = 0;
+};
+
+AnyLobe missed_by_any_lobe(const FrameCells& cells, std::size_t k) {
+  FrameCells others = cells, turned = cells;
+  for (std::size_t cell = 0; cell < cells.cells(); ++cell) {
+    const std::size_t at = cell * cells.count + k, back = (cells.cells() - 1 - cell) * cells.count + k;
+    others.value[at] = static_cast<float>(kNone);
+    turned.value[at] = cells.value[back] * cells.strength[back] / cells.strength[at];
+  }
+  const CellFit fit = fit_cells(others, 1);
+  return {missed_beyond(cells, errors_by_tilt(cells, fit, k), {}),
+          missed_beyond(turned, errors_by_tilt(turned, fit, k), {})};
+}
+
+// Whether a photograph that fits nothing is one of this cloth all the same: its light comes from elsewhere,
+// or all of the cloth lies in its highlight.
+bool is_explained(const FrameCells& cells, const CellFit& fit, std::size_t k, const FrameMisfit& misfit) {
+  constexpr double kExplained = 0.3;       // of what is missed
+  constexpr double kExplainsLittle = 0.4;  // of its power, noise taken off
+  if (missed_by_any_light(cells, fit, k) < kExplained * misfit.missed) return true;
+  const double left = missed_by_any_lobe(cells, k).missed;
+  if (misfit.missed > kMissedTimesOfGloss * misfit.typical) return left < kExplained * misfit.missed;
+  const double noise = std::pow(misfit.typical, 2);
+  return left * left - noise < kExplainsLittle * (std::pow(misfit.missed, 2) - noise);
+}
+
 // What is left of photograph k beside photograph j.
 double from_photograph(const FrameCells& cells, const CellFit& fit, std::size_t k, std::size_t j) {
   return difference(cells, fit, k, [&](std::size_t cell) {
@@ -207,6 +255,16 @@ double typical_difference(const std::vector<Twin>& twins) {
   return median(std::move(all));
 }
 
+// Whether a photograph fits the others better where it is turned by half: by Lambert's law, and not worse by
+// any other, which on a weave that looks the same turned tells less.
+bool fits_turned(const FrameCells& cells, const CellFit& fit, std::size_t k) {
+  constexpr double kClearly = 0.5, kNotWorse = 0.95, kNotMuchWorse = 1.5;
+  const double by_lambert = from_turned(cells, fit, k) / from_light(cells, fit, k, k);
+  if (!(by_lambert < kTurnedFrom)) return false;
+  const AnyLobe lobe = missed_by_any_lobe(cells, k);
+  return lobe.missed_turned < (by_lambert < kClearly ? kNotMuchWorse : kNotWorse) * lobe.missed;
+}
+
 // Whose photograph one that fits nothing is, as far as that tells.
 void find_cause(const FrameCells& cells, const CellFit& fit, std::size_t k, bool is_turned,
                 FrameMisfit& misfit) {
@@ -235,8 +293,11 @@ std::vector<FrameMisfit> frame_misfits(const FrameCells& cells, const CellFit& f
   parallel_for(cells.count, threads, [&](std::size_t k, int) {
     all[k].gain = light_in(cells, fit, k, whole);
     errors[k] = errors_of(cells, fit, k, all[k].gain);
-    blocks[k] = by_blocks(cells, errors[k]);
     all[k].missed = missed_beyond(cells, errors[k], {});
+  });
+  const bool shines = typical_of(all) > kIsMatt;
+  parallel_for(cells.count, threads, [&](std::size_t k, int) {
+    blocks[k] = shines ? blocks_by_tilt(cells, fit, k) : by_blocks(cells, errors[k]);
   });
   std::vector<Twin> twins(cells.count);
   parallel_for(cells.count, threads, [&](std::size_t k, int) { twins[k] = twin_of(cells, fit, k); });
@@ -258,7 +319,8 @@ std::vector<FrameMisfit> frame_misfits(const FrameCells& cells, const CellFit& f
     misfit.typical = median(std::move(others));
     const double times = misfit.typical > kIsMatt ? kMissedTimesOfGloss : kMissedTimes;
     const double fits_to = std::max(kMissedFrom, times * misfit.typical);
-    const auto off = largest_part(blocks[k], std::max(part_from, kPartTimes * misfit.typical));
+    const auto off = largest_part(
+        blocks[k], shines ? part_from : std::max(part_from, kPartTimes * misfit.typical), misfit.gain);
     const double share = static_cast<double>(off.size()) / (kAcross * kDown);
     if (share >= kLeastPart && share <= kMostPart) {
       const Rect part = around(off, cells);
@@ -273,16 +335,15 @@ std::vector<FrameMisfit> frame_misfits(const FrameCells& cells, const CellFit& f
     const bool fits_less = misfit.missed > std::max(kMissedFrom, kFitsLess * misfit.typical);
     const bool is_copy =
         fits_less && twin.difference < kCopyFrom * typical_twin && misfit.missed > all[twin.of].missed;
-    const bool is_turned =
-        fits_less && !is_copy && from_turned(cells, fit, k) < kTurnedFrom * from_light(cells, fit, k, k);
+    const bool is_turned = fits_less && !is_copy && fits_turned(cells, fit, k);
     if (is_copy || is_turned) misfit.part.reset();
     misfit.fits_nothing = is_copy || is_turned || (!misfit.part && misfit.missed > fits_to);
     if (!misfit.fits_nothing) return;
     if (is_copy) misfit.same_as = twin.of;
     if (!is_copy) find_cause(cells, fit, k, is_turned, misfit);
-    constexpr double kExplained = 0.3;  // of what is missed
-    const bool is_told = misfit.same_as || misfit.lit_by || misfit.is_turned;
-    misfit.fits_nothing = is_told || !(missed_by_any_light(cells, fit, k) < kExplained * misfit.missed);
+    const bool is_matt = misfit.typical <= kIsMatt;
+    const bool is_told = is_copy || is_turned || (is_matt && (misfit.lit_by || misfit.is_turned));
+    misfit.fits_nothing = is_told || !is_explained(cells, fit, k, misfit);
   });
   return all;
 }

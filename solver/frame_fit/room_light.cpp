@@ -21,14 +21,22 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kMostCells = 6'000;
 constexpr std::size_t kFewestGains = 6;
-constexpr int kParts = 4;                               // of the frame, a side
+constexpr int kParts = 4;  // of the frame, a side
+constexpr int kTurns = 8;  // kinds of tilt, by where it leans, each flat or steep
 constexpr double kGainPrior = 0.03, kSharePrior = 0.3;  // sigma beforehand
 constexpr double kLeastRelief_deg = 2;                  // rms: on flatter things gains of lights look like it
 constexpr double kNoRoomFrom = 6;  // sigma, beyond which an error is no light of the room
-constexpr double kToldFrom_sigmas = 5;
+constexpr double kToldFrom_sigmas = 5, kToldFromByTilt = 10;
 // What a clean cloth shows at most, measured (docs/measured/conditions.md): always, of readings in shadow,
 // and of what no noise explains.
 constexpr double kDoubt = 0.004, kDoubtOfShadow = 0.08, kDoubtOfMisfit = 4;
+
+// A cell's lit readings, over its brightness, off the span of their directions: what light and gains explain,
+// and the rest.
+struct CellPart {
+  MatrixXd design;
+  VectorXd rest;
+};
 
 // Least squares of the share and the gains: share first.
 struct Equations {
@@ -45,13 +53,44 @@ struct Equations {
     return std::abs(with_gains) < std::abs(without) ? with_gains : without;
   }
   double alone(const MatrixXd& prior) const { return rhs[0] / (a(0, 0) + prior(0, 0)); }
+  void add(const CellPart& part) {
+    a += part.design.transpose() * part.design;
+    rhs += part.design.transpose() * part.rest;
+  }
 };
 
-// A cell's lit readings, over its brightness, off the span of their directions: what light and gains explain,
-// and the rest.
-struct CellPart {
-  MatrixXd design;
-  VectorXd rest;
+// Variance of the share by leaving out each group in turn.
+double jackknifed(const Equations& all, const std::vector<Equations>& groups, const MatrixXd& prior) {
+  const double share = all.share(prior);
+  double squares = 0;
+  for (const Equations& group : groups) {
+    Equations rest = all;
+    rest.a -= group.a, rest.rhs -= group.rhs;
+    squares += std::pow(rest.share(prior) - share, 2);
+  }
+  const auto count = static_cast<double>(groups.size());
+  return squares * (count - 1) / count;
+}
+
+// Which way cells lean, and whether by more than half of them do.
+class Tilts {
+ public:
+  explicit Tilts(const CellFit& fit) {
+    std::vector<double> slopes;
+    for (const Vec3& normal : fit.normal) {
+      if (length(normal) > 0) slopes.push_back(angle_deg(normal, {0, 0, 1}));
+    }
+    half_deg_ = median(std::move(slopes));
+  }
+  static constexpr std::size_t kKinds = 2 * kTurns;
+  std::size_t kind_of(const Vec3& normal) const {
+    const double turn = std::atan2(normal.y, normal.x) / (2 * kPi) + 0.5;
+    const auto side = std::min<std::size_t>(kTurns - 1, static_cast<std::size_t>(kTurns * turn));
+    return 2 * side + (angle_deg(normal, {0, 0, 1}) > half_deg_ ? 1 : 0);
+  }
+
+ private:
+  double half_deg_ = 0;
 };
 
 std::optional<CellPart> part_of(const FrameCells& cells, const CellFit& fit,
@@ -130,24 +169,25 @@ double unlit_share(const FrameCells& cells, const CellFit& fit) {
 }  // namespace
 
 bool RoomShare::is_told() const {
-  return std::abs(share) > doubt && std::abs(share) > kToldFrom_sigmas * sigma;
+  return std::abs(share) > std::max({doubt, kToldFrom_sigmas * sigma, kToldFromByTilt * by_tilt});
 }
 
 RoomShare find_room_light(const FrameCells& cells, const CellFit& fit, std::span<const FrameMisfit> misfits,
                           double noise) {
-  const RoomShare none = {0, 0, 1, 1};
+  const RoomShare none = {0, 0, 1, 1, 1};
   if (cells.count < kFewestGains || relief_of(fit) < kLeastRelief_deg) return none;
   const auto unknowns = static_cast<Eigen::Index>(1 + cells.count);
-  std::vector<Equations> parts(kParts * kParts, Equations(unknowns));
+  const Tilts tilts(fit);
+  std::vector<Equations> parts(kParts * kParts, Equations(unknowns)),
+      kinds(Tilts::kKinds, Equations(unknowns));
   const std::size_t step = std::max<std::size_t>(1, cells.cells() / kMostCells) | 1U;
   const auto columns = static_cast<std::size_t>(cells.columns), rows = static_cast<std::size_t>(cells.rows);
   std::vector<CellPart> told;
   for (std::size_t cell = 0; cell < cells.cells(); cell += step) {
     std::optional<CellPart> part = part_of(cells, fit, misfits, cell);
     if (!part) continue;
-    Equations& equations = parts[cell / columns * kParts / rows * kParts + cell % columns * kParts / columns];
-    equations.a += part->design.transpose() * part->design;
-    equations.rhs += part->design.transpose() * part->rest;
+    parts[cell / columns * kParts / rows * kParts + cell % columns * kParts / columns].add(*part);
+    kinds[tilts.kind_of(fit.normal[cell])].add(*part);
     told.push_back(std::move(*part));
   }
   constexpr std::size_t kFewestCells = 200;
@@ -162,16 +202,10 @@ RoomShare find_room_light(const FrameCells& cells, const CellFit& fit, std::span
   const VectorXd solution = (all.a + prior).ldlt().solve(all.rhs);
   found.share = all.share(prior);
   found.alone = all.alone(prior);
-  // Jackknife over the parts.
-  double squares = 0;
-  for (const Equations& part : parts) {
-    Equations rest = all;
-    rest.a -= part.a, rest.rhs -= part.rhs;
-    squares += std::pow(rest.share(prior) - found.share, 2);
-  }
   const double by_noise =
       (all.a + prior).ldlt().solve(VectorXd::Unit(unknowns, 0))[0] * fit.sigma * fit.sigma;
-  found.sigma = std::sqrt(squares * (kParts * kParts - 1) / (kParts * kParts) + std::max(0.0, by_noise));
+  found.sigma = std::sqrt(jackknifed(all, parts, prior) + std::max(0.0, by_noise));
+  found.by_tilt = std::sqrt(jackknifed(all, kinds, prior));
   found.doubt = kDoubt + kDoubtOfShadow * unlit_share(cells, fit) +
                 kDoubtOfMisfit * std::max(0.0, misfit_with(solution, told) - 2 * noise);
   return found;

@@ -13,6 +13,8 @@ struct RoomShare {
   double share = 0;  ///< of a cell's mean reading; below 0: the dark shot has light that they lack
   double alone = 0;  ///< the same if no light has a gain
   double sigma = 0;  ///< of the share, by how parts of the frame differ
+  /// The same by how cells that lean differently differ: what shines, and light between yarns, depends on it.
+  double by_tilt = 0;
   /// So much may come of shadows, of light between yarns and of highlights.
   double doubt = 0;
 

@@ -10,8 +10,10 @@
 #include <numeric>
 #include <span>
 
+#include "core/base/parallel.h"
 #include "core/base/statistics.h"
 #include "core/base/vec.h"
+#include "solver/frame_fit/tilt_law.h"
 
 namespace weft::solver {
 namespace {
@@ -22,8 +24,13 @@ constexpr std::size_t kFewestRows = 24;
 constexpr double kFewestWaves = 2, kShortestPeriod = 3;  // over the frame; rows of cells
 constexpr double kWaveWide = 5;                          // sigma; beyond, an error counts as that much
 constexpr double kWaveFrom_sigmas = 8;
-// What all columns share of a wave, of its power in each.
-constexpr double kLeastAlike = 0.88, kLeastAlikeBeyondCloth = 0.75;
+// What all columns share of a wave, of its power in each: where cloth explains most of the light of rows;
+// where it does not; and where it explains next to nothing of a line that stands out by kStandsOut_sigmas.
+constexpr double kLeastAlike = 0.88, kLeastAlikeBeyondCloth = 0.75, kLeastAlikeOfLamps = 0.45;
+constexpr double kStandsOut_sigmas = 12;
+// Of a line's power, that no function of tilt explains: of a lamp's; of one that all columns share so much
+// that it is a lamp's even if cloth could explain the light of rows.
+constexpr double kLeastBeyondTilt = 0.16, kSurelyBeyondTilt = 0.2, kAlikeOfAll = 0.95;
 constexpr double kWidthOfLine = 2.5;  // waves over the frame, by the window
 constexpr std::size_t kMostTried = 24;
 constexpr int kMostHarmonics = 9;
@@ -109,6 +116,17 @@ RowsOf row_errors(const FrameCells& cells, const CellFit& fit, const Rows& rows)
   });
 }
 
+// The same where light is any function of how a cell leans.
+RowsOf row_errors_by_tilt(const FrameCells& cells, const CellFit& fit, const Rows& rows, int threads) {
+  CellFit by_tilt = fit;
+  parallel_for(cells.count, threads, [&](std::size_t k, int) {
+    const std::vector<float> errors = errors_by_tilt(cells, fit, k);
+    for (std::size_t cell = 0; cell < errors.size(); ++cell)
+      by_tilt.error[cell * cells.count + k] = errors[cell];
+  });
+  return row_errors(cells, by_tilt, rows);
+}
+
 // The logarithm of their light; the cloth is in it.
 RowsOf row_light(const FrameCells& cells, const CellFit& fit, const Rows& rows) {
   return row_means(cells, fit, rows, [&](std::size_t cell, std::size_t k, double) {
@@ -178,10 +196,15 @@ struct InLight {
   // A weave along the rows has errors that are the same in all columns, too, but the light of all lamps has
   // its yarns.
   bool is_weave() const { return rest < kOfCloth * by_cloth; }
-  double least_alike() const { return rest > by_cloth ? kLeastAlikeBeyondCloth : kLeastAlike; }
-  bool tells_lamps() const { return near < kMostNear * rest; }
+  bool is_of_lamps() const { return rest > kBeyondCloth * by_cloth; }
+  double least_alike(double sigmas) const {
+    if (is_of_lamps() && sigmas > kStandsOut_sigmas) return kLeastAlikeOfLamps;
+    return rest > by_cloth ? kLeastAlikeBeyondCloth : kLeastAlike;
+  }
+  // Whether the light of rows says what each lamp does: little of cloth is in it.
+  bool tells_lamps() const { return near < kMostNear * rest && rest > by_cloth; }
 
-  static constexpr double kOfCloth = 0.5, kMostNear = 0.4;
+  static constexpr double kOfCloth = 0.5, kBeyondCloth = 2, kMostNear = 0.4;
 };
 
 // The light of rows, and what of it one albedo and one tilt a row would explain.
@@ -366,55 +389,130 @@ bool is_of(double line, double waves) {
   return std::abs(waves - times * line) < kWidthOfLine;
 }
 
-}  // namespace
+// A number of waves that stands out of the errors.
+struct Line {
+  double waves = 0;
+  double sigmas = 0;  // of its amplitude
+  InLight in_light;
+  double beyond_tilt = 0;  // of its power: what no function of tilt explains
+  double alike = 0;        // 0: not looked at
 
-std::optional<RowWaves> find_row_waves(const FrameCells& cells, const CellFit& fit,
-                                       std::span<const std::size_t> strangers, int threads) {
-  const auto count = static_cast<std::size_t>(cells.rows);
-  if (count < kFewestRows) return std::nullopt;
-  const Rows rows(count);
-  RowsOf errors = row_errors(cells, fit, rows);
-  for (const std::size_t k : strangers) std::ranges::fill(errors[k], 0);
-  const double most = static_cast<double>(count) / kShortestPeriod;
-  const Spectrum spectrum = spectrum_of(errors, rows, static_cast<std::size_t>(most));
-  const LightOfCloth cloth(cells, fit, rows);
-  std::vector<double> weave;  // lines of it
-  for (const std::size_t number : spectrum.strongest()) {
-    const auto waves = static_cast<double>(number);
-    const double rms = std::sqrt(spectrum.powers[number] / static_cast<double>(cells.count));
-    if (spectrum.powers[number] < kWaveFrom_sigmas * kWaveFrom_sigmas * spectrum.floor || rms < kLeastWave)
-      break;
-    if (waves < kFewestWaves || std::ranges::any_of(weave, [&](double line) { return is_of(line, waves); }))
-      continue;
-    const InLight in_light = cloth.of(waves);
-    if (in_light.is_weave()) {
-      weave.push_back(waves);
-      continue;
+  bool is_weave() const {
+    if (in_light.is_weave()) return alike <= kAlikeOfAll;
+    return in_light.rest < in_light.by_cloth && beyond_tilt < kLeastBeyondTilt;
+  }
+  bool is_of_lamps() const { return alike >= in_light.least_alike(sigmas); }
+  bool tells_lamps() const {
+    return in_light.tells_lamps() && (alike > kLeastAlike || in_light.is_of_lamps());
+  }
+};
+
+// Looks at lines of errors, the strongest first.
+class Lines {
+ public:
+  Lines(const FrameCells& cells, const CellFit& fit, std::span<const std::size_t> strangers, int threads)
+      : cells_(cells),
+        fit_(fit),
+        strangers_(strangers),
+        threads_(threads),
+        rows_(static_cast<std::size_t>(cells.rows)),
+        errors_(row_errors(cells, fit, rows_)),
+        cloth_(cells, fit, rows_) {
+    forget_strangers(errors_);
+    spectrum_ = spectrum_of(errors_, rows_, static_cast<std::size_t>(most()));
+  }
+
+  // That of lamps, if there is one.
+  std::optional<Line> of_lamps() {
+    std::vector<double> weave;  // lines of it
+    for (const std::size_t number : spectrum_.strongest()) {
+      const auto waves = static_cast<double>(number);
+      if (!stands_out(number)) break;
+      if (waves < kFewestWaves || std::ranges::any_of(weave, [&](double line) { return is_of(line, waves); }))
+        continue;
+      const Line line = look_at(number);
+      if (line.is_weave())
+        weave.push_back(waves);
+      else if (line.is_of_lamps())
+        return line;
     }
-    const double alike = alikeness(cells, fit, rows, waves, strangers);
-    if (alike < in_light.least_alike()) continue;
+    return std::nullopt;
+  }
 
+  RowWaves follow(const Line& line) const {
     RowWaves found;
-    const double first = refined(errors, rows, waves);
-    found.period_rows = static_cast<double>(count) / first;
-    found.sigma = std::sqrt(spectrum.floor / static_cast<double>(cells.count));
-    std::vector<double> numbers = {first};
-    for (int n = 2; n <= kMostHarmonics && n * first <= most; ++n) {
-      const double own = std::sqrt(power(errors, rows, n * first) / static_cast<double>(cells.count));
-      if (own > std::max(kWaveFrom_sigmas * found.sigma, 0.25 * kLeastWave)) numbers.push_back(n * first);
-    }
+    const double first = refined(errors_, rows_, line.waves);
+    found.period_rows = static_cast<double>(cells_.rows) / first;
+    found.sigma = std::sqrt(spectrum_.floor / static_cast<double>(cells_.count));
     std::vector<bool> flickers;
-    for (const std::vector<double>& each : errors)
-      flickers.push_back(std::abs(rows.wave(each, first)) > kWaveFrom_sigmas * found.sigma);
-    Waves light(cells, rows, std::move(numbers), flickers, threads);
-    found.are_even = light.follow(fit, cloth) && in_light.tells_lamps() && alike > kLeastAlike;
-    for (std::size_t k = 0; k < cells.count; ++k) {
+    for (const std::vector<double>& each : errors_)
+      flickers.push_back(std::abs(rows_.wave(each, first)) > kWaveFrom_sigmas * found.sigma);
+    Waves light(cells_, rows_, with_harmonics(first, found.sigma), flickers, threads_);
+    found.are_even = light.follow(fit_, cloth_) && line.tells_lamps();
+    for (std::size_t k = 0; k < cells_.count; ++k) {
       found.amplitude.push_back(flickers[k] ? light.amplitude(k) : 0);
       found.gain.push_back(flickers[k] ? light.gain(k) : std::vector<float>());
     }
     return found;
   }
-  return std::nullopt;
+
+ private:
+  double most() const { return static_cast<double>(cells_.rows) / kShortestPeriod; }
+  double rms(double power_of_wave) const {
+    return std::sqrt(power_of_wave / static_cast<double>(cells_.count));
+  }
+  bool stands_out(std::size_t number) const {
+    const double own = spectrum_.powers[number];
+    return own >= kWaveFrom_sigmas * kWaveFrom_sigmas * spectrum_.floor && rms(own) >= kLeastWave;
+  }
+  void forget_strangers(RowsOf& values) const {
+    for (const std::size_t k : strangers_) std::ranges::fill(values[k], 0);
+  }
+
+  Line look_at(std::size_t number) {
+    const double own = spectrum_.powers[number];
+    Line line;
+    line.waves = static_cast<double>(number);
+    line.sigmas = std::sqrt(own / spectrum_.floor);
+    line.in_light = cloth_.of(line.waves);
+    if (by_tilt_.empty()) {
+      by_tilt_ = row_errors_by_tilt(cells_, fit_, rows_, threads_);
+      forget_strangers(by_tilt_);
+    }
+    line.beyond_tilt = power(by_tilt_, rows_, line.waves) / own;
+    const bool may_be_of_lamps = !line.in_light.is_weave() || line.beyond_tilt > kSurelyBeyondTilt;
+    if (may_be_of_lamps) line.alike = alikeness(cells_, fit_, rows_, line.waves, strangers_);
+    return line;
+  }
+
+  std::vector<double> with_harmonics(double first, double sigma) const {
+    std::vector<double> numbers = {first};
+    for (int n = 2; n <= kMostHarmonics && n * first <= most(); ++n) {
+      const double own = rms(power(errors_, rows_, n * first));
+      if (own > std::max(kWaveFrom_sigmas * sigma, 0.25 * kLeastWave)) numbers.push_back(n * first);
+    }
+    return numbers;
+  }
+
+  const FrameCells& cells_;
+  const CellFit& fit_;
+  std::span<const std::size_t> strangers_;
+  int threads_;
+  Rows rows_;
+  RowsOf errors_, by_tilt_;
+  LightOfCloth cloth_;
+  Spectrum spectrum_;
+};
+
+}  // namespace
+
+std::optional<RowWaves> find_row_waves(const FrameCells& cells, const CellFit& fit,
+                                       std::span<const std::size_t> strangers, int threads) {
+  if (static_cast<std::size_t>(cells.rows) < kFewestRows) return std::nullopt;
+  Lines lines(cells, fit, strangers, threads);
+  const std::optional<Line> line = lines.of_lamps();
+  if (!line) return std::nullopt;
+  return lines.follow(*line);
 }
 
 }  // namespace weft::solver

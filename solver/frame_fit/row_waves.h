@@ -23,10 +23,10 @@ struct RowWaves {
 };
 
 /// Looks for one period in errors that are the same in all columns: a weave's differ from column to column,
-/// or lie in what albedo and tilt explain of the light of rows, and its multiples with it. Light that goes in
-/// step with yarns is not told from them. Periods of 3 rows of cells to a half of the frame are looked for.
-/// None where nothing is above kLeastWave and its sigma. Photographs that are `strangers` to the others are
-/// not looked at.
+/// or lie in what albedo and tilt explain of the light of rows, to first order or as any lobe would, and its
+/// multiples with it. Light that goes in step with yarns is told from them where it is much of theirs.
+/// Periods of 3 rows of cells to a half of the frame are looked for. None where nothing is above kLeastWave
+/// and its sigma. Photographs that are `strangers` to the others are not looked at.
 inline constexpr double kLeastWave = 0.002;
 std::optional<RowWaves> find_row_waves(const FrameCells& cells, const CellFit& fit,
                                        std::span<const std::size_t> strangers, int threads);

@@ -10,6 +10,7 @@
 #include "solver/frame_fit/frame_misfit.h"
 #include "solver/frame_fit/room_light.h"
 #include "solver/frame_fit/row_waves.h"
+#include "solver/frame_fit/tilt_law.h"
 
 namespace weft::solver {
 namespace {
@@ -175,6 +176,79 @@ TEST(FrameFit, NamesThePartThatAHandHides) {
   EXPECT_LE(misfit.part->y0, 80);
   EXPECT_EQ(misfit.part->y1, kRows);
   EXPECT_NEAR(misfit.part_share, 0.125, 0.03);
+}
+
+// A lobe that all of a nearly level cloth shows to one light, and to the one beside it, and that no other
+// sees.
+FrameCells ribs_in_a_highlight(double slope) {
+  FrameCells cells = cloth_with(
+      [&](int x, int y) {
+        return Vec3{0.02 * std::sin(1.3 * x), slope * std::sin(2 * kPi * y / 11.0), 1};
+      },
+      0);
+  for (std::size_t cell = 0; cell < cells.cells(); ++cell) {
+    const int y = static_cast<int>(cell) / kColumns;
+    const double tilt = slope * std::sin(2 * kPi * y / 11.0);
+    for (const std::size_t k : {2U, 3U})
+      cells.value[cell * kLights + k] +=
+          static_cast<float>(0.8 * std::exp(-std::pow((tilt + (k == 2 ? 0.05 : -0.1)) / 0.3, 2)));
+  }
+  return cells;
+}
+
+TEST(FrameFit, AccusesNoPhotographInWhoseHighlightAllOfTheClothLies) {
+  const FrameCells cells = ribs_in_a_highlight(0.2);
+  const CellFit fit = fit_cells(cells, 1);
+  const std::vector<FrameMisfit> misfits = frame_misfits(cells, fit, 1);
+  ASSERT_GT(misfits[2].missed, 0.2) << "Lambert's law is far off";
+  for (std::size_t k = 0; k < kLights; ++k)
+    EXPECT_FALSE(misfits[k].is_wrong()) << k << ": " << misfits[k].missed;
+  // The same light on another cloth is no function of how this one leans.
+  const FrameCells other = changed(cells, 2, [&](int x, int y, double) {
+    return static_cast<double>(
+        cells.value[static_cast<std::size_t>((y + 31) % kRows * kColumns + x) * kLights + 2]);
+  });
+  EXPECT_TRUE(frame_misfits(other, fit_cells(other, 1), 1)[2].fits_nothing);
+}
+
+TEST(FrameFit, TakesAHighlightForNoPartThatAHandHides) {
+  const FrameCells cells = changed(waves_of_cloth(), 6, [](int x, int y, double value) {
+    return x < 12 && y >= 80 ? value + 0.3 : value;
+  });
+  EXPECT_FALSE(frame_misfits(cells, fit_cells(cells, 1), 1)[6].part);
+}
+
+TEST(FrameFit, NamesThePartThatAHandHidesOfClothThatShines) {
+  const FrameCells cells = changed(waves_of_cloth(0.5), 6, [](int x, int y, double value) {
+    return x < 12 && y >= 80 ? 0.2 * value : value;
+  });
+  const std::vector<FrameMisfit> misfits = frame_misfits(cells, fit_cells(cells, 1), 1);
+  ASSERT_GT(misfits[0].typical, kMissedFrom) << "it shines";
+  for (std::size_t k = 0; k < kLights; ++k) EXPECT_EQ(misfits[k].part.has_value(), k == 6) << k;
+}
+
+TEST(FrameFit, WhatLeansAsAFunctionOfTiltLeavesNoErrorByTilt) {
+  const FrameCells cells = waves_of_cloth(0.5);
+  const CellFit fit = fit_cells(cells, 1);
+  const auto rms = [](const std::vector<float>& errors) {
+    double squares = 0, count = 0;
+    for (const float error : errors) {
+      if (std::isfinite(error)) squares += std::pow(static_cast<double>(error), 2), ++count;
+    }
+    return std::sqrt(squares / count);
+  };
+  const double of_cloth = rms(errors_by_tilt(cells, fit, 2));
+  const FrameCells other =
+      changed(cells, 2, [](int x, int y, double) { return 0.3 + 0.2 * std::sin(0.31 * x * x + 0.17 * y); });
+  const double of_another = rms(errors_by_tilt(other, fit, 2));
+  EXPECT_LT(of_cloth, 0.25 * of_another) << of_cloth << " and " << of_another;
+}
+
+TEST(FrameFit, ClothThatShinesIsNoLightOfTheRoom) {
+  for (const double gloss : {0.05, 0.1, 0.2}) {
+    const RoomShare room = room_of(waves_of_cloth(gloss));
+    EXPECT_FALSE(room.is_told()) << room.share << " of gloss " << gloss << ", by tilt " << room.by_tilt;
+  }
 }
 
 TEST(FrameFit, EvensOutLightThatFlickersAlongRows) {
