@@ -214,27 +214,7 @@ class FrameQuestions {
     return "";
   }
 
-  // One of two shots that are one file is wrong.
-  void accuse_copies() {
-    const std::vector<Shot>& lit = exposures_.plan.lit;
-    std::vector<std::string> digests(photographs_.count());
-    for (const Shot& shot : lit) {
-      const std::size_t k = exposures_.plan.is_of_rig ? photographs_.light_of(shot.led)
-                                                      : static_cast<std::size_t>(&shot - lit.data());
-      if (k < digests.size()) digests[k] = shot.sha256;
-    }
-    for (std::size_t k = 0; k < digests.size(); ++k) {
-      for (std::size_t j = k + 1; j < digests.size(); ++j) {
-        if (digests[k].empty() || digests[k] != digests[j]) continue;
-        const bool is_first = misfits_[k].missed > misfits_[j].missed;
-        misfits_[is_first ? k : j].fits_nothing = true;
-        misfits_[is_first ? k : j].same_as = is_first ? j : k;
-      }
-    }
-  }
-
   Result<void> leave_out_strangers() {
-    accuse_copies();
     std::vector<std::size_t> accused = strangers();
     std::erase_if(accused, [&](std::size_t k) { return are_exchanged(k); });
     const std::size_t count = photographs_.count();

@@ -124,16 +124,19 @@ void choose_more(SolvePlan& plan) {
 }
 
 // Two LEDs do not make one photograph.
-void tell_of_copies(SolvePlan& plan) {
+Result<void> refuse_copies(const SolvePlan& plan) {
   std::map<std::string, const Shot*> seen;
   for (const Shot& shot : plan.lit) {
     if (shot.sha256.empty()) continue;
     const auto [same, is_new] = seen.emplace(shot.sha256, &shot);
     if (is_new) continue;
-    plan.warnings.push_back(fmt::format(
-        "{} of LED {} and {} of LED {} are one file, copied: scan again, or leave one of them out",
-        same->second->file, same->second->led, shot.file, shot.led));
+    return Error{ErrorKind::kBadData, "one photograph is under two LEDs",
+                 plan.session.path_of(shot).string(),
+                 fmt::format("of LED {}; its bytes are those of {}, of LED {}", shot.led, same->second->file,
+                             same->second->led),
+                 "photograph the cloth again, or leave one of the two LEDs out with --lights"};
   }
+  return {};
 }
 
 // All shots that are read. Their names tell whether they are raw.
@@ -142,8 +145,8 @@ Result<void> choose_shots(const std::vector<int>& leds, SolvePlan& plan) {
   if (!lit) return std::move(lit).error();
   plan.lit = std::move(*lit);
   if (const Shot* dark = plan.session.dark()) plan.dark = *dark;
+  if (Result<void> ok = refuse_copies(plan); !ok) return ok;
   plan.raw = !is_linear_image(plan.session.path_of(plan.lit.front()));
-  tell_of_copies(plan);
   choose_parallel(plan);
   choose_more(plan);
   return {};

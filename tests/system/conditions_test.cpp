@@ -137,8 +137,11 @@ class Conditions : public testing::Test {
     });
   }
   void put_led_dark(std::size_t led) const {
-    change_raw(led - 1,
-               [&](RawFrame& frame) { frame.counts = std::move(need(capture::decode_raw(dark())).counts); });
+    change_raw(led - 1, [&](RawFrame& frame) {
+      const std::uint16_t own = frame.counts(0, 0);  // two LEDs with one file are refused
+      frame.counts = std::move(need(capture::decode_raw(dark())).counts);
+      frame.counts(0, 0) = own;
+    });
   }
   fs::path dark() const { return session_ / "raw" / "10_led00.dng"; }
 
@@ -447,6 +450,22 @@ TEST_F(Conditions, WithTwoLedsThatLitThereIsNothingToSolve) {
   expect_refusal(work_, {"solve", session_.string(), "--quiet"}, 65,
                  {"too few lights", session_.string(), "LEDs 3, 4, 5, 6, 7, 8, 9, 10 did not light the cloth",
                   "leaves 2"});
+}
+
+TEST_F(Conditions, OnePhotographUnderTwoLedsIsRefusedByNameAndNotWithoutOneOfThem) {
+  simulate(scene_named("golden", {48, 32}), session_);
+  edit_session([&](Json& s) {
+    const fs::path third = session_ / s["shots"][2]["file"].get<std::string>();
+    fs::copy_file(session_ / s["shots"][6]["file"].get<std::string>(), third,
+                  fs::copy_options::overwrite_existing);
+    s["shots"][2]["sha256"] = s["shots"][6]["sha256"];
+  });
+  expect_refusal(work_, {"solve", session_.string(), "--quiet"}, 65,
+                 {"one photograph is under two LEDs", "06_led07.dng", "of LED 7", "02_led03.dng, of LED 3",
+                  "--lights"});
+  const Outcome without =
+      run_weft({"solve", session_.string(), "--lights", "1,2,4,5,6,7,8,9,10", "--quiet"});
+  EXPECT_EQ(without.exit_code, 0) << without.error;
 }
 
 TEST_F(Conditions, CalibrationsShareOfSigmaIsWorkedOutOnAGridAndBlended) {
