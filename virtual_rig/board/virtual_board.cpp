@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <condition_variable>
@@ -87,6 +88,8 @@ class SimulatedBoard final : public VirtualBoard {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
     return {};
   }
+
+  double stood_still_s() const override { return stood_still_s_; }
 
   void inject(VirtualBoardFault fault) override {
     std::unique_lock lock(mutex_);
@@ -210,7 +213,10 @@ class SimulatedBoard final : public VirtualBoard {
 
   void live_until(RigClock::time_point now) {
     const bool starting = now < bootloader_until_;
-    if (starting || now - time_of(avr_->cycles()) > kMostBehind) set_clock();
+    const auto behind = now - time_of(avr_->cycles());
+    if (!starting && behind > kMostBehind)
+      stood_still_s_ = stood_still_s_ + std::chrono::duration<double>(behind).count();
+    if (starting || behind > kMostBehind) set_clock();
     for (const std::uint64_t end = cycle_at(now); !starting && avr_->cycles() < end;) {
       feed();
       avr_->run_to(std::min(end, avr_->cycles() + kSliceCycles));
@@ -281,6 +287,7 @@ class SimulatedBoard final : public VirtualBoard {
   int usb_number_ = 0;
   RigClock::time_point clock_time_;  ///< when the board was at clock_cycle_
   std::uint64_t clock_cycle_ = 0;
+  std::atomic<double> stood_still_s_ = 0;
   std::uint32_t dtr_rises_ = 0;
   RigClock::time_point bootloader_until_, noise_until_, busy_until_;
   std::deque<std::uint8_t> inbox_;

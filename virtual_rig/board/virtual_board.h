@@ -81,6 +81,8 @@ class VirtualBoard {
   static Result<std::unique_ptr<VirtualBoard>> start(const VirtualBoardOptions& options, LitLog& pins);
   virtual ~VirtualBoard() = default;  ///< stops it; all dark
   virtual void inject(VirtualBoardFault fault) = 0;
+  /// Seconds by which its time lies behind: it stands still where the machine is too busy to keep up.
+  virtual double stood_still_s() const = 0;
 };
 
 }  // namespace weft::virtual_rig
