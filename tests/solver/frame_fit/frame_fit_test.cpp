@@ -277,6 +277,19 @@ TEST(FrameFit, EvensOutLightThatFlickersAlongRows) {
   EXPECT_LT(after, 0.3 * before) << before << " degrees before, " << after << " after";
 }
 
+TEST(FrameFit, TellsOneLampThatFlickersOverALevelCard) {
+  const FrameCells cells =
+      changed(cloth_with(
+                  [](int, int) {
+                    return Vec3{0.05, 0.02, 1};
+                  },
+                  0),
+              4, [](int, int y, double value) { return value * (1 + 0.05 * std::sin(2 * kPi * y / 17.0)); });
+  const std::optional<RowWaves> waves = find_row_waves(cells, fit_cells(cells, 1), {}, 1);
+  ASSERT_TRUE(waves);
+  EXPECT_NEAR(waves->period_rows, 17, 0.2);
+}
+
 // Yarns along the rows shine, each alike from end to end.
 TEST(FrameFit, TakesNoWeaveAlongTheRowsForFlicker) {
   constexpr double kPitch = 9;
