@@ -42,7 +42,7 @@ double level_at(const Cell& black, int x, int y) {
 // How a dark shot follows the mean light of the frames, site by site: level + share * light.
 struct DarkLight {
   double share = 0, sigma = 0;  // of their light
-  double above = 0;             // of it, what lies above the black level, in step with it or not
+  double above = 0;             // what lies above the black level, of it, in step with it or not
   double bright = 0;            // its brighter tenth, of full scale above black
 };
 

@@ -130,8 +130,7 @@ Result<void> refuse_copies(const SolvePlan& plan) {
     if (shot.sha256.empty()) continue;
     const auto [same, is_new] = seen.emplace(shot.sha256, &shot);
     if (is_new) continue;
-    return Error{ErrorKind::kBadData, "one photograph is under two LEDs",
-                 plan.session.path_of(shot).string(),
+    return Error{ErrorKind::kBadData, "one photograph is under two LEDs", plan.session.path_of(shot).string(),
                  fmt::format("of LED {}; its bytes are those of {}, of LED {}", shot.led, same->second->file,
                              same->second->led),
                  "photograph the cloth again, or leave one of the two LEDs out with --lights"};

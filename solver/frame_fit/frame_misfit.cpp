@@ -202,13 +202,16 @@ AnyLobe missed_by_any_lobe(const FrameCells& cells, std::size_t k) {
 }
 
 // Whether a photograph that fits nothing is one of this cloth all the same: its light comes from elsewhere,
-// or all of the cloth lies in its highlight.
+// or all of the cloth lies in its highlight, which on cloth that is matt to the other lights is a faint one.
 bool is_explained(const FrameCells& cells, const CellFit& fit, std::size_t k, const FrameMisfit& misfit) {
-  constexpr double kExplained = 0.3;       // of what is missed
-  constexpr double kExplainsLittle = 0.4;  // of its power, noise taken off
+  constexpr double kExplained = 0.3, kExplainsFaint = 0.4;  // of what is missed
+  constexpr double kFaint = 0.12;                           // of the brightness
+  constexpr double kExplainsLittle = 0.4;                   // of its power, noise taken off
   if (missed_by_any_light(cells, fit, k) < kExplained * misfit.missed) return true;
+  if (misfit.typical <= kIsMatt && misfit.missed > kFaint) return false;
   const double left = missed_by_any_lobe(cells, k).missed;
-  if (misfit.missed > kMissedTimesOfGloss * misfit.typical) return left < kExplained * misfit.missed;
+  if (misfit.missed > kMissedTimesOfGloss * misfit.typical)
+    return left < (misfit.typical <= kIsMatt ? kExplainsFaint : kExplained) * misfit.missed;
   const double noise = std::pow(misfit.typical, 2);
   return left * left - noise < kExplainsLittle * (std::pow(misfit.missed, 2) - noise);
 }

@@ -28,9 +28,9 @@ constexpr double kWaveFrom_sigmas = 8;
 // where it does not; and where it explains next to nothing of a line that stands out by kStandsOut_sigmas.
 constexpr double kLeastAlike = 0.88, kLeastAlikeBeyondCloth = 0.75, kLeastAlikeOfLamps = 0.45;
 constexpr double kStandsOut_sigmas = 12;
-// Of a line's power, that no function of tilt explains: of a lamp's where cloth explains most of the light of
-// rows (where it does not, tilt may be of the flicker itself); and of one that all columns share so much that
-// it is a lamp's even so.
+// A share of a line's power, that no function of tilt explains: of a lamp's where cloth explains most of the
+// light of rows (where it does not, tilt may be of the flicker itself); and of one that all columns share so
+// much that it is a lamp's even so.
 constexpr double kLeastBeyondTilt = 0.03, kSurelyBeyondTilt = 0.2, kAlikeOfAll = 0.95;
 constexpr double kWidthOfLine = 2.5;  // waves over the frame, by the window
 constexpr std::size_t kMostTried = 24;

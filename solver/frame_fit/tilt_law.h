@@ -7,7 +7,7 @@
 
 namespace weft::solver {
 
-/// Of a frame, in each of which another function holds: light and highlights change across it.
+/// Light and highlights change across a frame: in each of its parts another function holds.
 struct Parts {
   int across = 1, down = 1;
 };
