@@ -341,6 +341,9 @@ TEST_F(Conditions, ABracketSavesWhatIsSaturatedByItsMeasuredRatio) {
   scene.camera.retakes.bracket = 0.2;
   scene.camera.retakes.shutter_error = 0.04;
   simulate(scene, session_);
+  edit_session([](Json& s) {  // frames that are full all over are one file
+    for (Json& shot : s["shots"]) shot.erase("sha256");
+  });
   const Solved with = solve(session_);
   EXPECT_EQ(with.conditions["brackets"], 10);
   const double error_with = mean_error_deg(with, session_);
