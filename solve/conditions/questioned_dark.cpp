@@ -28,10 +28,9 @@
 namespace weft::solve {
 namespace {
 
-constexpr double kBrighter = 0.9;  // of the dark shot's sites, in the order of their light
-constexpr double kBlackErs =
-    1e-4;                 // of full scale: a dark shot without light may lie so far beside its level
-constexpr int kStep = 7;  // sites that are looked at; odd: of every colour
+constexpr double kBrighter = 0.9;   // of the dark shot's sites, in the order of their light
+constexpr double kBlackErs = 1e-4;  // of full scale, by which black may lie beside its level
+constexpr int kStep = 7;            // sites that are looked at; odd: of every colour
 
 using Cell = std::array<std::array<float, 2>, 2>;
 
@@ -64,7 +63,7 @@ DarkLight light_of(const Mosaics& mosaics, const Cell& black) {
   }
   DarkLight found;
   found.bright = quantile(std::move(light), kBrighter);
-  found.above = std::max(0.0, y_sum - kBlackErs * static_cast<double>(dark.white) * n) / x_sum;
+  if (x_sum > 0) found.above = std::max(0.0, y_sum - kBlackErs * static_cast<double>(dark.white) * n) / x_sum;
   const double spread = xx - x_sum * x_sum / n, both = xy - x_sum * y_sum / n, rest = yy - y_sum * y_sum / n;
   if (!(spread > 0) || n < 10) return {0, 1, 0, found.bright};
   found.share = both / spread;

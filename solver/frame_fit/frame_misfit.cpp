@@ -95,10 +95,8 @@ std::vector<double> blocks_by_tilt(const FrameCells& cells, const CellFit& fit, 
 // The median of what photographs are missed by.
 double typical_of(const std::vector<FrameMisfit>& misfits) {
   std::vector<double> all;
-  for (const FrameMisfit& misfit : misfits) {
-    if (std::isfinite(misfit.missed)) all.push_back(misfit.missed);
-  }
-  return median(std::move(all));
+  for (const FrameMisfit& misfit : misfits) all.push_back(misfit.missed);
+  return median(finite(std::move(all)));
 }
 
 // The largest part of blocks that touch and are too dark. Too bright is a highlight, but in a photograph that

@@ -14,12 +14,12 @@ struct FrameMisfit {
   double gain = 1;     ///< its light over what the others predict, median over lit cells
   double missed = 0;   ///< with that gain: median of |error|, of the brightness
   double typical = 0;  ///< the same of the other photographs, their median
-  /// Cells that do not fit though they do elsewhere, and the share of the frame that they are.
+  /// Cells that are too dark, though they fit elsewhere, and the share of the frame that they are.
   std::optional<Rect> part;
   double part_share = 0;
   double part_light = 1;  ///< in that part, of what the others predict
   /// Not said where it fits a light that comes from elsewhere: then the lights are not what they are said to
-  /// be, and the frame is right.
+  /// be, and the frame is right; nor where all of the cloth may lie in its highlight (tilt_law.h).
   bool fits_nothing = false;
   /// The photograph that shows what this one does, if there is one.
   std::optional<std::size_t> same_as;

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kAlike = 18;      // cells that lean alike, about
 constexpr std::size_t kMostTilts = 16;  // an axis
 constexpr std::size_t kFewestAlike = 8;
-constexpr double kMuchLess = 0.5;
+constexpr double kMuchLess = 0.5;  // of what is left without a highlight
 
 // A cell that has a reading, by how it leans.
 struct Leaning {
@@ -86,10 +86,8 @@ void for_each_group(std::span<Leaning> all, double Leaning::*axis, std::size_t c
 
 double typical_size(const std::vector<float>& errors) {
   std::vector<float> sizes;
-  for (const float error : errors) {
-    if (std::isfinite(error)) sizes.push_back(std::abs(error));
-  }
-  return static_cast<double>(median(std::move(sizes)));
+  for (const float error : errors) sizes.push_back(std::abs(error));
+  return static_cast<double>(median(finite(std::move(sizes))));
 }
 
 }  // namespace

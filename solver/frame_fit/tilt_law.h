@@ -16,7 +16,8 @@ struct Parts {
 /// function of how it leans, whatever function; and where that leaves less than half as much, another
 /// function more, of a highlight that goes by no albedo. Cloth that shines has them, however little they are
 /// Lambert's law; a photograph of something else has not. Medians of cells that lean alike stand for the
-/// functions. NaN where too few do.
+/// first, lines by albedo through them for both (Tukey, Exploratory Data Analysis, 1977). NaN where too few
+/// do.
 std::vector<float> errors_by_tilt(const FrameCells& cells, const CellFit& fit, std::size_t k,
                                   Parts parts = {4, 2});
 
