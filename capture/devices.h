@@ -59,6 +59,7 @@ struct CameraFacts {
   std::string port;  ///< where it was found: "usb:001,007", "ptpip:127.0.0.1:15740:15740"
   ExposureSettings exposure;
   double battery = 1;              ///< share left
+  double shutter_travel_s = 0;     ///< from its first row's exposure to that of the last; 0: nobody knows
   double clock_offset_s = 0;       ///< camera's clock minus this machine's
   double clock_uncertainty_s = 1;  ///< how far off the offset may be
 };

@@ -299,6 +299,7 @@ Result<CameraFacts> CameraLink::note_opened(const Json& opened) {
   if (Result<void> ok = fields.status(); !ok) return wrong_line(ok.error().message());
   if (!exposure) return exposure.error();
   facts_.exposure = *exposure;
+  facts_.shutter_travel_s = profile_.shutter_travel_s;
   note_clock(opened.value("clock", Json()));
   ready_ = true;
   return facts_;

@@ -59,6 +59,9 @@ void describe(Fields& fields, CameraProfile& p) {
   fields.choice({"trigger", "When libgphoto2's trigger returns"}, p.trigger, kTriggers);
   fields.value({"readout_s", "Most from the end of an exposure until it has arrived, s", {0.1, 120}},
                p.readout_s);
+  fields.value(
+      {"shutter_travel_s", "From the exposure of the first row to that of the last, s; 0: unknown", {0, 1}},
+      p.shutter_travel_s);
   fields.value({"least_battery", "Share below which no scan begins", {0, 1}}, p.least_battery);
   fields.object({.name = "widgets", .says = "Names of libgphoto2's widgets", .need = kMustSay}, p.widgets);
   fields.list({"by_hand", "What only a person can set at the body"}, p.by_hand);

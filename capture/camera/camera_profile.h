@@ -20,6 +20,7 @@ struct CameraProfile {
   /// second is safe with either kind of body: the LED is lit for longer.
   enum class Trigger { kBlocks, kReturnsAtOnce } trigger = Trigger::kReturnsAtOnce;
   double readout_s = 5;         ///< most a photograph takes from the end of its exposure until it has arrived
+  double shutter_travel_s = 0;  ///< from the exposure of the first row to that of the last; 0: nobody knows
   double least_battery = 0.15;  ///< share
 
   /// Names of libgphoto2's widgets (`gphoto2 --list-config`, the last part of each).

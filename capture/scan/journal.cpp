@@ -263,6 +263,12 @@ Result<void> Journal::set_exposure(const Json& exposure) {
   return done;
 }
 
+Result<void> Journal::set_shutter_travel(double travel_s) {
+  Session session = session_;
+  session.shutter_travel_s = travel_s;
+  return replace(std::move(session));
+}
+
 Result<Shot> Journal::keep(const DueShot& planned, const Photograph& photograph, const Json& notes) {
   const Result<std::string> digest = sha256_of_file(photograph.file);
   if (!digest) return digest.error();

@@ -146,6 +146,7 @@ class Scan {
     if (calibration_) {
       if (Result<void> ok = check_calibration(request_, *facts, *calibration_); !ok) return ok;
     }
+    shutter_travel_s_ = facts->shutter_travel_s;
     Result<std::vector<double>> times = shooter_.shutter_times_us();
     if (!times) return times.error();
     shutter_times_us_ = std::move(*times);
@@ -172,6 +173,9 @@ class Scan {
                                              : Journal::open(request_, calibration_id(), list_);
     if (!journal) return journal.error();
     journal_.emplace(std::move(*journal));
+    if (shutter_travel_s_ != journal_->session().shutter_travel_s && !request_.again) {
+      if (Result<void> ok = journal_->set_shutter_travel(shutter_travel_s_); !ok) return ok;
+    }
     frames_resumed_ = static_cast<int>(journal_->session().shots.size());
     report_.change([&](ScanStatus& status) {
       status.frames = frames_resumed_;
@@ -577,6 +581,7 @@ class Scan {
   std::optional<Journal> journal_;
   std::vector<double> shutter_times_us_;
   double asked_us_ = 0, below_asked_us_ = 0;  ///< of the camera's own; 0: metered
+  double shutter_travel_s_ = 0;               ///< 0: nobody knows
   ExposureSettings exposure_;
   OtherTimes times_;
   std::vector<DueShot> plan_;

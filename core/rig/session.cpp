@@ -79,6 +79,9 @@ void describe(Fields& fields, Session& s) {
   fields.list({"shots", "One an exposure", kAnyNumber, kMustSay}, s.shots);
   fields.object({"films", "Of shots that were taken through polarisers", kAnyNumber, kUnlessEmpty}, s.films);
   fields.object({"pose", "Of a cloth that does not lie flat on the table", kAnyNumber, kUnlessEmpty}, s.pose);
+  fields.value(
+      {"shutter_travel_s", "From the exposure of the first row to that of the last, s", {0, 1}, kUnlessEmpty},
+      s.shutter_travel_s);
   fields.object(
       {"photographs", "That no rig took: how they and their lights are read", kAnyNumber, kUnlessEmpty},
       s.photographs);
@@ -191,6 +194,8 @@ Result<void> write_session(const Session& session) {
     document["schema"] = fmt::format("{}/1.4", kSessionSchema);
   if (session.photographs && !document.contains("photographs"))
     document["schema"] = fmt::format("{}/1.6", kSessionSchema);
+  if (session.shutter_travel_s > 0 && !document.contains("shutter_travel_s"))
+    document["schema"] = fmt::format("{}/1.7", kSessionSchema);
   Session written = session;
   written.document = std::move(document);
   Json json;

@@ -69,6 +69,7 @@ struct Session {
   std::string state = "complete";  ///< "capturing" until the last frame has landed
   std::vector<Shot> shots;
   Films films;
+  double shutter_travel_s = 0;  ///< from the exposure of the first row to that of the last; 0: nobody knows
   /// How photographs that no rig took, and their lights, are read: they were brought along, and there is no
   /// calibration. None: a rig took them.
   std::optional<PhotoReading> photographs;

@@ -81,6 +81,8 @@ void describe(Fields& fields, FrameFitFacts& f) {
 
 void describe(Fields& fields, RowFlickerFacts& r) {
   fields.value({"period_rows", "Rows from one crest of its light to the next", {}, kMustSay}, r.period_rows);
+  fields.value({"hertz", "Crests in a second, where the time of the shutter is known", {}, kUnlessEmpty},
+               r.hertz);
   fields.value({"sigma", "Standard deviation of the frames' rows"}, r.sigma);
   fields.value({"costs_deg", "By which it would turn the normals, degrees"}, r.costs_deg);
 }

@@ -87,6 +87,7 @@ struct FrameFitFacts {
 /// Light that flickers while the shutter goes over the sensor.
 struct RowFlickerFacts {
   double period_rows = 0;  ///< rows of pixels from crest to crest
+  double hertz = 0;        ///< 0: nobody knows how fast the shutter goes over the rows
   double sigma = 0;        ///< of FrameFitFacts::rows
   double costs_deg = 0;    ///< by which it turns the normals, left alone; 0 where it was left as it is
 };

@@ -127,7 +127,9 @@ class FrameQuestions {
 
   void tell_waves(const solver::CellChange& change) {
     const double period = kCellSide * waves_->period_rows;
-    photographs_.conditions.facts.flicker = {period, waves_->sigma, change.turned_deg};
+    const double travel_s = exposures_.plan.session.shutter_travel_s;
+    const double hertz = travel_s > 0 ? (photographs_.size.height - 1) / (travel_s * period) : 0;
+    photographs_.conditions.facts.flicker = {period, hertz, waves_->sigma, change.turned_deg};
     std::vector<std::string> names;
     for (std::size_t k = 0; k < mends_.size(); ++k) {
       if (!waves_->gain[k].empty())
@@ -139,8 +141,9 @@ class FrameQuestions {
                           change.turned_deg)
             : "it was left as it is";
     say({"ROWS_FLICKER",
-         fmt::format("Light flickers along the rows, {:.3g} rows from crest to crest: {} (sigma {}); {}",
-                     period, fmt::join(names, ", "), percent_words(waves_->sigma), done),
+         fmt::format("Light flickers along the rows, {:.3g} rows from crest to crest{}: {} (sigma {}); {}",
+                     period, hertz > 0 ? fmt::format(", {:.3g} hertz", hertz) : "", fmt::join(names, ", "),
+                     percent_words(waves_->sigma), done),
          "drive the LEDs by a steady current and not by pulses, and expose for whole periods of the mains"});
   }
 
