@@ -80,10 +80,10 @@ struct BoardLimits {
 /// Finds a board. Corners are saddle points refined by cv::cornerSubPix in windows that hold nothing else, so
 /// that they need no correction: OpenCV's interpolateCornersCharuco gives them half a pixel lower and further
 /// right, as it counts from the corner of the first pixel. They start from the homographies of the markers
-/// beside them, which a lens bends little; on a checkerboard from cv::findChessboardCornersSB. A checkerboard
-/// is turned so that its upper left square is black; where that leaves two ways, so that its rows run to the
-/// right in the picture. It has no mirror image of its own: only ChArUco boards can be kMirrored.
-/// `board` must pass check_board.
+/// beside them, which a lens bends little; on a checkerboard from their neighbours, and rims of black or of
+/// cut squares are left out. A checkerboard is turned so that its upper left square is black; where that
+/// leaves two ways, so that its rows run to the right in the picture. It has no mirror image of its own: only
+/// ChArUco boards can be kMirrored. `board` must pass check_board.
 BoardSighting find_board(View<const std::uint8_t> grey, const Board& board, const BoardLimits& limits = {});
 
 }  // namespace weft::calibration

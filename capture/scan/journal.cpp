@@ -255,18 +255,13 @@ Result<void> Journal::replace(Session session) {
   return {};
 }
 
-Result<void> Journal::set_exposure(const Json& exposure) {
+Result<void> Journal::set_exposure(const Json& exposure, double shutter_travel_s) {
   Session session = session_;
   session.document["exposure"] = exposure;
+  session.shutter_travel_s = shutter_travel_s;
   Result<void> done = replace(std::move(session));
   after_step_("exposure written");
   return done;
-}
-
-Result<void> Journal::set_shutter_travel(double travel_s) {
-  Session session = session_;
-  session.shutter_travel_s = travel_s;
-  return replace(std::move(session));
 }
 
 Result<Shot> Journal::keep(const DueShot& planned, const Photograph& photograph, const Json& notes) {

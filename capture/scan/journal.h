@@ -50,10 +50,8 @@ class Journal {
   /// The folder too: a finished session has none.
   void forget_incoming() const;
 
-  /// Exposure of the lit shots and where it comes from.
-  Result<void> set_exposure(const Json& exposure);
-  /// What the camera says of its shutter.
-  Result<void> set_shutter_travel(double travel_s);
+  /// Exposure of the lit shots and where it comes from, and what is known of the shutter.
+  Result<void> set_exposure(const Json& exposure, double shutter_travel_s);
   /// Puts a photograph in its place, read-only, its digest verified (kTryAgain where it is another), and then
   /// into session.json, together with the word that the shot it supersedes is superseded. `notes` are further
   /// fields of the shot.

@@ -173,9 +173,6 @@ class Scan {
                                              : Journal::open(request_, calibration_id(), list_);
     if (!journal) return journal.error();
     journal_.emplace(std::move(*journal));
-    if (shutter_travel_s_ != journal_->session().shutter_travel_s && !request_.again) {
-      if (Result<void> ok = journal_->set_shutter_travel(shutter_travel_s_); !ok) return ok;
-    }
     frames_resumed_ = static_cast<int>(journal_->session().shots.size());
     report_.change([&](ScanStatus& status) {
       status.frames = frames_resumed_;
@@ -219,7 +216,7 @@ class Scan {
                       std::back_inserter(warnings_));
     if (report_.phase() == ScanPhase::kMetering) report_.phase(ScanPhase::kExposing);
     report_.change([&](ScanStatus& status) { status.exposure_us = exposure_.exposure_us; });
-    return journal_->set_exposure(record);
+    return journal_->set_exposure(record, shutter_travel_s_);
   }
 
   Result<void> take_up_exposure(const Json& record) {

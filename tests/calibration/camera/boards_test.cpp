@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <opencv2/aruco.hpp>
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/imgproc.hpp>
@@ -123,6 +124,72 @@ TEST(FindBoard, TakesABoardOfBeforeOpenCv46ByItsIds) {
     ASSERT_EQ(sighting.corners.size(), static_cast<std::size_t>(board.corners()));
     EXPECT_NEAR(sighting.corners[0].px.x, 2 * kSquare_px - 0.5, 0.1) << columns << " x " << rows;
     EXPECT_NEAR(sighting.corners[0].px.y, 2 * kSquare_px - 0.5, 0.1);
+  }
+}
+
+// A checkerboard as it is sold, tilted a little: `rim` is painted on a picture of a square's side more to
+// each side, before the board.
+template <typename Rim>
+cv::Mat rimmed_checkerboard(const Board& board, const cv::Matx33d& tilt, const Rim& rim) {
+  constexpr int kSquare_px = 60;
+  const auto squares = [&](cv::Mat& picture, int from_x, int to_x, int from_y, int to_y) {
+    for (int row = from_y; row < to_y; ++row) {
+      for (int column = from_x; column < to_x; ++column)
+        picture(cv::Rect((column + 2) * kSquare_px, (row + 2) * kSquare_px, kSquare_px, kSquare_px))
+            .setTo((row + column) % 2 == 0 ? 0 : 255);
+    }
+  };
+  cv::Mat flat((board.squares_y + 4) * kSquare_px, (board.squares_x + 4) * kSquare_px, CV_8U,
+               cv::Scalar(255));
+  rim(flat, kSquare_px, squares);
+  squares(flat, 0, board.squares_x, 0, board.squares_y);
+  cv::Mat picture;
+  cv::warpPerspective(flat, picture, tilt, flat.size(), cv::INTER_LINEAR, cv::BORDER_CONSTANT, 128);
+  cv::GaussianBlur(picture, picture, {0, 0}, 1.0);
+  return picture;
+}
+
+TEST(FindBoard, TakesCheckerboardsWithinTheRimsThatSellersPrint) {
+  const Board board = checkerboard();
+  const int nx = board.squares_x, ny = board.squares_y;
+  const auto frame = [](cv::Mat& picture, int from_px, int to_px) {
+    picture(cv::Rect(from_px, from_px, picture.cols - 2 * from_px, picture.rows - 2 * from_px)).setTo(0);
+    picture(cv::Rect(to_px, to_px, picture.cols - 2 * to_px, picture.rows - 2 * to_px)).setTo(255);
+  };
+  using Painted =
+      std::function<void(cv::Mat&, int, const std::function<void(cv::Mat&, int, int, int, int)>&)>;
+  const std::vector<std::pair<std::string, Painted>> rims = {
+      {"a line", [&](cv::Mat& p, int side, const auto&) { frame(p, side - 3, side + 3); }},
+      {"black about it", [&](cv::Mat& p, int side, const auto&) { frame(p, side, 2 * side); }},
+      {"black a quarter away", [&](cv::Mat& p, int side, const auto&) { frame(p, 0, 2 * side - side / 4); }},
+      {"half squares",
+       [&](cv::Mat& p, int side, const auto& squares) {
+         squares(p, -1, nx + 1, -1, ny + 1);
+         const cv::Rect inner(3 * side / 2, 3 * side / 2, p.cols - 3 * side, p.rows - 3 * side);
+         const cv::Mat kept = p(inner).clone();
+         p.setTo(255);
+         kept.copyTo(p(inner));
+       }},
+      {"squares to the edge of the picture",
+       [&](cv::Mat& p, int, const auto& squares) { squares(p, -1, nx + 1, -1, ny + 1); }}};
+  for (const auto& [name, rim] : rims) {
+    for (const cv::Matx33d& tilt :
+         {cv::Matx33d::eye(), cv::Matx33d(0.9, 0.05, 10, -0.03, 0.92, 20, 1e-4, 5e-5, 1)}) {
+      const cv::Mat picture = rimmed_checkerboard(board, tilt, rim);
+      const View<const std::uint8_t> grey(picture.ptr(), {picture.cols, picture.rows}, picture.cols);
+      const BoardSighting sighting = find_board(grey, board);
+      if (name == "squares to the edge of the picture") {
+        EXPECT_EQ(sighting.fault, BoardFault::kWrongSquares) << sighting.why;
+        EXPECT_THAT(sighting.why, HasSubstr("11 x 8 corners were found")) << "all of them whole";
+        continue;
+      }
+      ASSERT_EQ(sighting.fault, BoardFault::kNone) << name << ": " << sighting.why;
+      ASSERT_EQ(sighting.corners.size(), static_cast<std::size_t>(board.corners())) << name;
+      const cv::Vec3d first = tilt * cv::Vec3d(3 * 60 - 0.5, 3 * 60 - 0.5, 1);
+      const BoardCorner& corner = sighting.corners.front();
+      EXPECT_NEAR(corner.px.x, first[0] / first[2], 0.1) << name;
+      EXPECT_NEAR(corner.px.y, first[1] / first[2], 0.1) << name;
+    }
   }
 }
 

@@ -74,7 +74,7 @@ Result<void> scanned(
     const ScanRequest& request, const AfterStep& after_step = [](const char*) {}) {
   Result<Journal> journal = opened(request, after_step);
   if (!journal) return journal.error();
-  if (Result<void> ok = journal->set_exposure({{"exposure_us", 20000}}); !ok) return ok;
+  if (Result<void> ok = journal->set_exposure({{"exposure_us", 20000}}, 0); !ok) return ok;
   for (const DueShot& shot : missing_shots(plan_shots(kList, kExposure, {}), journal->session())) {
     Result<Shot> kept = journal->keep(shot, landed(*journal, shot), Json::object());
     if (!kept) return kept.error();
