@@ -43,8 +43,7 @@ struct Kept {
   bool was_light_right = true;  ///< of the shots until now, the one taken meanwhile among them
 };
 
-/// What the frames so far say of the next one. While a frame is on its way, its thread owns this and brings
-/// it back.
+/// What the frames so far say of the next one. The thread of a frame on its way owns it.
 struct FramesSoFar {
   std::optional<PatchLights> model;  ///< until the first frame has come
   std::optional<RawFrame> first;     ///< without its counts
@@ -555,8 +554,7 @@ class Scan {
     return done;
   }
 
-  /// It comes before the end of the session: a scan that is killed meanwhile makes it when it is run again.
-  /// One that cannot be made is made by weft copy, once its disk is there.
+  /// Before the end of the session, so that a scan that is killed meanwhile makes it when it is run again.
   Json second_copy() {
     if (const auto one_disk = warning_of_one_disk(request_.session, request_.copy))
       warnings_.push_back(*one_disk);
@@ -578,7 +576,7 @@ class Scan {
   std::optional<Journal> journal_;
   std::vector<double> shutter_times_us_;
   double asked_us_ = 0, below_asked_us_ = 0;  ///< of the camera's own; 0: metered
-  double shutter_travel_s_ = 0;               ///< 0: nobody knows
+  double shutter_travel_s_ = 0;
   ExposureSettings exposure_;
   OtherTimes times_;
   std::vector<DueShot> plan_;
