@@ -225,7 +225,7 @@ std::vector<Verdict> verdicts_of(const BatchState& state) {
       state.rows, [](const BatchRow& row) { return row.result && !row.result->frames.empty(); });
   if (lie > 0)
     verdicts.push_back({"FRAMES_LIE",
-                        fmt::format("{} have frames that lie, each named below with what was done",
+                        fmt::format("{} have frames that lie: the report names each and what was done",
                                     sessions_in_words(static_cast<int>(lie))),
                         "scan these again where what is left of them is not enough"});
   if (s.worse > 0)
@@ -235,7 +235,7 @@ std::vector<Verdict> verdicts_of(const BatchState& state) {
 }
 
 std::vector<report::Section> sections_of(const BatchState& state) {
-  return {done_section(state),         causes_section(state),  warned_section(state),  frames_section(state),
+  return {frames_section(state),       done_section(state),    causes_section(state),  warned_section(state),
           calibrations_section(state), changes_section(state), left_out_section(state)};
 }
 

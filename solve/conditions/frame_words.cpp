@@ -27,8 +27,11 @@ std::string how_again(const Exposures& exposures, int number) {
 }
 
 std::string words_of(const solver::CellChange& cost) {
-  return fmt::format("turns the normals by {:.2g}\u00b0 and makes albedo {} percent too {}", cost.turned_deg,
-                     percent_words(std::abs(cost.albedo)), cost.albedo > 0 ? "bright" : "dark");
+  constexpr double kLeastAlbedo = 0.0005;
+  const std::string turns = fmt::format("turns the normals by {:.2g}\u00b0", cost.turned_deg);
+  if (std::abs(cost.albedo) < kLeastAlbedo) return turns;
+  return fmt::format("{} and makes albedo {} percent too {}", turns, percent_words(std::abs(cost.albedo)),
+                     cost.albedo > 0 ? "bright" : "dark");
 }
 
 }  // namespace weft::solve

@@ -125,16 +125,27 @@ class FrameQuestions {
     look_again();
   }
 
+  // Frames whose light flickers, and by how much: in few words where it is that of all.
+  std::string flickering() const {
+    constexpr double kAlike = 1.25;
+    std::vector<std::string> names;
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (std::size_t k = 0; k < mends_.size(); ++k) {
+      if (waves_->gain[k].empty()) continue;
+      const double amplitude = waves_->amplitude[k];
+      least = std::min(least, amplitude), most = std::max(most, amplitude);
+      names.push_back(fmt::format("{} by {} percent", name(k), percent_words(amplitude)));
+    }
+    if (names.size() == mends_.size() && most <= kAlike * least)
+      return fmt::format("all {} frames by {} percent", names.size(), percent_words(most));
+    return fmt::format("{}", fmt::join(names, ", "));
+  }
+
   void tell_waves(const solver::CellChange& change) {
     const double period = kCellSide * waves_->period_rows;
     const double travel_s = exposures_.plan.session.shutter_travel_s;
     const double hertz = travel_s > 0 ? (photographs_.size.height - 1) / (travel_s * period) : 0;
     photographs_.conditions.facts.flicker = {period, hertz, waves_->sigma, change.turned_deg};
-    std::vector<std::string> names;
-    for (std::size_t k = 0; k < mends_.size(); ++k) {
-      if (!waves_->gain[k].empty())
-        names.push_back(fmt::format("{} by {} percent", name(k), percent_words(waves_->amplitude[k])));
-    }
     const std::string done =
         waves_->are_even
             ? fmt::format("left alone, that turns the normals by {:.2g}\u00b0; it was evened out",
@@ -142,7 +153,7 @@ class FrameQuestions {
             : "it was left as it is";
     say({"ROWS_FLICKER",
          fmt::format("Light flickers along the rows, {:.3g} rows from crest to crest{}: {} (sigma {}); {}",
-                     period, hertz > 0 ? fmt::format(", {:.3g} hertz", hertz) : "", fmt::join(names, ", "),
+                     period, hertz > 0 ? fmt::format(", {:.3g} hertz", hertz) : "", flickering(),
                      percent_words(waves_->sigma), done),
          "drive the LEDs by a steady current and not by pulses, and expose for whole periods of the mains"});
   }

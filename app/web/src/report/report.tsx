@@ -58,14 +58,19 @@ export function Section({title, paragraphs, table, figures, note, is_half}: Sect
   );
 }
 
+const SENTENCE = 40;
+
 function Rows({title, header, rows, alarms, bars}: TableData & {title: string}) {
+  const isOfWords = header.map((_, column) => rows.some((cells) => (cells[column]?.length ?? 0) > SENTENCE));
+  const words = (cell: string | undefined, column: number) =>
+    isOfWords[column] ? <span class="words">{cell}</span> : cell;
   const barOf = (row: number) => <span class="bar" style={{width: `${100 * (bars[row] ?? 0)}%`}} />;
   return (
-    <Table caption={title} heads={header}
+    <Table caption={title} heads={header.map(words)}
       rows={rows.map((cells, row) => ({
         key: row,
         isAlarm: alarms.includes(row),
-        cells: bars.length > 0 ? [...cells.slice(0, -1), barOf(row), ...cells.slice(-1)] : [small(cells[0]), ...cells.slice(1)],
+        cells: bars.length > 0 ? [...cells.slice(0, -1), barOf(row), ...cells.slice(-1)] : [small(cells[0]), ...cells.slice(1).map((cell, index) => words(cell, index + 1))],
       }))} />
   );
 }
