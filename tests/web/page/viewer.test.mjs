@@ -75,6 +75,7 @@ function part({data, width}, box) {
 
 /** What the canvas shows, without what lies on it at its edges. */
 async function seen(page) {
+  await page.locator('.minimap img').evaluateAll((pictures) => Promise.all(pictures.map((each) => each.decode())));
   const box = await page.locator('canvas').boundingBox();
   return {...part(await pixelsOf(page), box), box};
 }
