@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace weft {
@@ -52,8 +53,10 @@ CoarseLight coarse_light(Size frame, const CfaPattern& cfa, const VeilOverFrame:
 }  // namespace
 
 CoarseLight::CoarseLight(Size frame)
-    : frame_(frame), side_((std::max(frame.width, frame.height) + kMostCells - 1) / kMostCells) {
-  side_ = std::max(side_, kRowsInEvery);
+    : CoarseLight(frame, std::max((std::max(frame.width, frame.height) + kMostCells - 1) / kMostCells,
+                                  kRowsInEvery)) {}
+
+CoarseLight::CoarseLight(Size frame, int side) : frame_(frame), side_(side) {
   const Size cells = {(frame.width + side_ - 1) / side_, (frame.height + side_ - 1) / side_};
   sum_ = Image<double>(cells, 3);
   count_ = Image<double>(cells, 3);
@@ -65,9 +68,9 @@ void CoarseLight::add(int x, int y, int channel, float light) {
   ++count_(x / side_, y / side_, channel);
 }
 
-SpreadLight::SpreadLight(const CoarseLight& light, double spread)
-    : side_(light.side()), mean_(light.cells(), 3) {
+SpreadLight::SpreadLight(const CoarseLight& light, double spread) : side_(light.side()) {
   const Size cells = light.cells();
+  Image<float> mean(cells, 3);
   const double sigma_cells = spread * std::hypot(light.frame().width, light.frame().height) / side_;
   const Image<double> across = spread_along(cells.width, sigma_cells);
   const Image<double> down = spread_along(cells.height, sigma_cells);
@@ -90,29 +93,41 @@ SpreadLight::SpreadLight(const CoarseLight& light, double spread)
           all.sum += down(j, y) * row.sum;
           all.count += down(j, y) * row.count;
         }
-        mean_(x, y, c) = all.count > 0 ? static_cast<float>(all.sum / all.count) : 0.0F;
+        mean(x, y, c) = all.count > 0 ? static_cast<float>(all.sum / all.count) : 0.0F;
       }
     }
   }
+  mean_ = std::make_shared<const Image<float>>(std::move(mean));
+}
+
+SpreadLight::SpreadLight(int side, Image<float> cells)
+    : side_(side), mean_(std::make_shared<const Image<float>>(std::move(cells))) {}
+
+SpreadLight SpreadLight::part(Rect area) const {
+  SpreadLight part = *this;
+  part.x0_ += area.x0, part.y0_ += area.y0;
+  return part;
 }
 
 // The mean of a column of cells at the height of row y.
 double SpreadLight::cell_at(int column, int y, int channel) const {
   const int before = cell_before(y, side_);
-  const int upper = std::max(before, 0), lower = std::min(before + 1, mean_.height() - 1);
-  const double from = static_cast<double>(mean_(column, upper, channel));
-  const double to = static_cast<double>(mean_(column, lower, channel));
+  const int upper = std::max(before, 0), lower = std::min(before + 1, mean_->height() - 1);
+  const double from = static_cast<double>((*mean_)(column, upper, channel));
+  const double to = static_cast<double>((*mean_)(column, lower, channel));
   return from + (to - from) * (y - middle_of(before, side_)) / side_;
 }
 
 double SpreadLight::at(int x, int y, int channel) const {
+  x += x0_, y += y0_;
   const int before = cell_before(x, side_);
   const double from = cell_at(std::max(before, 0), y, channel);
-  const double to = cell_at(std::min(before + 1, mean_.width() - 1), y, channel);
+  const double to = cell_at(std::min(before + 1, mean_->width() - 1), y, channel);
   return from + (to - from) * (x - middle_of(before, side_)) / side_;
 }
 
 void SpreadLight::take_off(double share, Rect part, const CfaPattern& cfa, View<float> readings) const {
+  part = {part.x0 + x0_, part.y0 + y0_, part.x1 + x0_, part.y1 + y0_};
   for (int y = part.y0; y < part.y1; ++y) {
     float* row = readings.row(y - part.y0) - part.x0;
     const int first = cell_before(part.x0, side_), last = cell_before(part.x1 - 1, side_);
@@ -123,7 +138,7 @@ void SpreadLight::take_off(double share, Rect part, const CfaPattern& cfa, View<
       for (int x = x0; x < std::min(x0 + 2, x1); ++x) {  // by column of the filter pattern
         const int channel = cfa.channel_at(x, y);
         const double from = share * cell_at(std::max(cell, 0), y, channel);
-        const double to = share * cell_at(std::min(cell + 1, mean_.width() - 1), y, channel);
+        const double to = share * cell_at(std::min(cell + 1, mean_->width() - 1), y, channel);
         for (int i = x; i < x1; i += 2)
           row[i] -= static_cast<float>(from + (to - from) * (i - middle) / side_);
       }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "core/image/image.h"
@@ -10,10 +11,12 @@
 
 namespace weft {
 
-/// The light of a frame, coarsely: the mean of each of at most 32 x 32 square cells, planes R, G, B.
+/// The light of a frame, coarsely: the mean of each square cell, planes R, G, B.
 class CoarseLight {
  public:
+  /// At most 32 x 32 cells.
   explicit CoarseLight(Size frame);
+  CoarseLight(Size frame, int side);
 
   /// Adds the light of one pixel. What is not finite does not count.
   void add(int x, int y, int channel, float light);
@@ -40,6 +43,10 @@ class SpreadLight {
  public:
   /// `spread`: standard deviation, frame diagonals.
   SpreadLight(const CoarseLight& light, double spread);
+  /// Cells of `side` pixels whose light is known: planes R, G, B.
+  SpreadLight(int side, Image<float> cells);
+  /// That of a part of the frame, which begins on an even row and column.
+  SpreadLight part(Rect area) const;
 
   /// Between the middles of cells, linear; beyond the outermost as there.
   double at(int x, int y, int channel) const;
@@ -50,7 +57,8 @@ class SpreadLight {
   double cell_at(int column, int y, int channel) const;
 
   int side_;
-  Image<float> mean_;
+  int x0_ = 0, y0_ = 0;  ///< where the frame begins in what `mean_` is of
+  std::shared_ptr<const Image<float>> mean_;
 };
 
 /// The veil over one photograph (Veil, core/rig/calibration.h), to be taken from its readings: what the lens

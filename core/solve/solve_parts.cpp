@@ -94,6 +94,11 @@ void describe(Fields& fields, RoomLightFacts& r) {
   fields.value({"costs_albedo", "By which it would make albedo too bright, a share"}, r.costs_albedo);
 }
 
+void describe(Fields& fields, ClothSpreadFacts& s) {
+  fields.value({"share", "Of the light that leaves beside where it entered", {}, kMustSay}, s.share);
+  fields.value({"mean_mm", "How far away, in the mean, mm", {}, kMustSay}, s.mean_mm);
+}
+
 void describe(Fields& fields, ConditionFacts& c) {
   fields.value({"hot_photosites", "That were replaced, of raw frames", kNotNegative}, c.hot_photosites);
   fields.value({"veil", "Share of the light that was taken off"}, c.veil);
@@ -105,6 +110,8 @@ void describe(Fields& fields, ConditionFacts& c) {
   fields.list({"frames", "How each frame fits the others", {}, kUnlessEmpty}, c.frames);
   fields.object({"flicker", "Of light along rows", {}, kUnlessEmpty}, c.flicker);
   fields.object({"room", "Light of frames or dark shot alone", {}, kUnlessEmpty}, c.room);
+  fields.object({"cloth_spread", "Of light in the cloth, which was undone", {}, kUnlessEmpty},
+                c.cloth_spread);
 }
 
 void describe(Fields& fields, AngleMiddle& a) {

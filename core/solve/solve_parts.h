@@ -96,6 +96,10 @@ struct RoomLightFacts {
   double share = 0, sigma = 0;  ///< of the mean reading
   double costs_deg = 0, costs_albedo = 0;
 };
+/// How cloth spreads the light that enters it.
+struct ClothSpreadFacts {
+  double share = 0, mean_mm = 0;  ///< of the light that leaves elsewhere, and how far away
+};
 /// What was found in the frames and corrected (docs/conditions.md).
 struct ConditionFacts {
   std::optional<int> hot_photosites;  ///< of raw frames
@@ -107,6 +111,7 @@ struct ConditionFacts {
   std::vector<FrameFitFacts> frames;
   std::optional<RowFlickerFacts> flicker;
   std::optional<RoomLightFacts> room;
+  std::optional<ClothSpreadFacts> cloth_spread;  ///< that was undone
 };
 void describe(Fields& fields, ConditionFacts& conditions);
 

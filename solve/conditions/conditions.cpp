@@ -13,6 +13,7 @@
 #include "solve/conditions/questioned_frames.h"
 #include "solve/conditions/questioned_lights.h"
 #include "solve/conditions/tilted_cloth.h"
+#include "solve/conditions/translucent_cloth.h"
 #include "solve/conditions/useless_lights.h"
 
 namespace weft::solve {
@@ -21,7 +22,8 @@ namespace {
 // In the order in which they must be met: each is found in photographs that those before it have put right.
 constexpr std::array kConditions = {find_full_scale, tell_veil,       mend_photosites, hide_unread_rows,
                                     question_dark,   question_lights, add_brackets,    drop_useless_lights,
-                                    question_frames, follow_drift,    lay_level,       follow_cloth};
+                                    question_frames, follow_drift,    lay_level,       take_off_spread_light,
+                                    follow_cloth};
 
 }  // namespace
 

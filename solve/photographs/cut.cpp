@@ -48,6 +48,10 @@ Frames cut_frames(const Mosaics& whole, Rect area) {
   Mosaics part(std::move(frames), std::move(dark), whole.response, whole.exposure);
   part.noise = whole.noise;
   for (const FrameMend& mend : whole.mends) part.mends.push_back(cut_mend(mend, area));
+  if (whole.beside) {
+    part.beside = BesideLight{whole.beside->share, {}};
+    for (const SpreadLight& light : whole.beside->frames) part.beside->frames.push_back(light.part(area));
+  }
   return part;
 }
 

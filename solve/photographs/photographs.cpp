@@ -32,6 +32,18 @@ void mend(const FrameMend& mend, Rect part, View<float> out) {
   }
 }
 
+CfaPattern all_of(int channel) {
+  const auto site = static_cast<std::uint8_t>(channel);
+  return {{{{site, site}, {site, site}}}};
+}
+
+void scale(double factor, View<float> readings) {
+  for (int y = 0; y < readings.height(); ++y) {
+    float* row = readings.row(y);
+    for (int x = 0; x < readings.width(); ++x) row[x] *= static_cast<float>(factor);
+  }
+}
+
 }  // namespace
 
 std::vector<View<const float>> Developed::readings(std::size_t k, Rect part, View<float> /*scratch*/) const {
@@ -106,6 +118,10 @@ std::vector<View<const float>> Mosaics::readings(std::size_t k, Rect part, View<
   if (!mends.empty()) mend(mends[k], part, out);
   if (!brackets.empty() && !brackets[k].empty()) add_brackets(k, part, out);
   if (!veils.empty()) veils[k].take_off(part, out);
+  if (beside) {
+    beside->frames[k].take_off(1, part, radiometry.cfa(), out);
+    scale(1 / (1 - beside->share), out);
+  }
   for (int y = part.y0; inside && y < part.y1; ++y) {
     for (int x = part.x0; x < part.x1; ++x) {
       if ((*inside)(x, y) == 0) out(x - part.x0, y - part.y0) = std::numeric_limits<float>::quiet_NaN();
@@ -137,6 +153,7 @@ void Mosaics::erase(std::size_t k) {
   if (!brackets.empty()) brackets.erase(brackets.begin() + static_cast<std::ptrdiff_t>(k));
   if (!veils.empty()) veils.erase(veils.begin() + static_cast<std::ptrdiff_t>(k));
   if (!mends.empty()) mends.erase(mends.begin() + static_cast<std::ptrdiff_t>(k));
+  if (beside) beside->frames.erase(beside->frames.begin() + static_cast<std::ptrdiff_t>(k));
 }
 
 void mend_frames(std::vector<FrameMend> mends, Frames& frames) {
@@ -149,6 +166,26 @@ void mend_frames(std::vector<FrameMend> mends, Frames& frames) {
     const Size size = developed.rgb[k].size();
     if (mends[k].row_gain.empty() && mends[k].missing.empty()) continue;
     for (int c = 0; c < 3; ++c) mend(mends[k], {0, 0, size.width, size.height}, developed.rgb[k].plane(c));
+    developed.page_out(k);
+  }
+}
+
+void take_off_beside(BesideLight beside, Frames& frames) {
+  const double left = 1 / (1 - beside.share);
+  if (auto* mosaics = std::get_if<Mosaics>(&frames)) {
+    NoiseModel& noise = mosaics->noise;
+    for (double* variance : {&noise.per_reading, &noise.floor, &noise.shared}) *variance *= left * left;
+    mosaics->beside = std::move(beside);
+    return;
+  }
+  auto& developed = std::get<Developed>(frames);
+  for (std::size_t k = 0; k < beside.frames.size(); ++k) {
+    const Size size = developed.rgb[k].size();
+    for (int c = 0; c < 3; ++c) {
+      const View<float> plane = developed.rgb[k].plane(c);
+      beside.frames[k].take_off(1, {0, 0, size.width, size.height}, all_of(c), plane);
+      scale(left, plane);
+    }
     developed.page_out(k);
   }
 }

@@ -70,6 +70,13 @@ struct FrameMend {
   std::vector<Rect> missing;    ///< has no readings
 };
 
+/// Light of each frame that had entered the cloth elsewhere, to be taken off, and the share of all light that
+/// does.
+struct BesideLight {
+  double share = 0;
+  std::vector<SpreadLight> frames;
+};
+
 /// A mosaic once more at another exposure.
 struct Bracket {
   RawFrame frame;
@@ -98,6 +105,7 @@ struct Mosaics {
   std::vector<Photosite> replaced;             ///< sorted: their counts are what their neighbours say
   std::vector<VeilOverFrame> veils;            ///< of each frame, taken off; empty where the lens has none
   std::vector<FrameMend> mends;                ///< of each frame; empty where none needs any
+  std::optional<BesideLight> beside;           ///< none: left as it is
   std::optional<Image<std::uint8_t>> inside;   ///< 1 where the cloth is; none: everywhere
 
   std::size_t count() const { return frames.size(); }
@@ -116,6 +124,10 @@ using Frames = std::variant<Developed, Mosaics>;
 
 /// Does what mends say to frames, each by its own.
 void mend_frames(std::vector<FrameMend> mends, Frames& frames);
+
+/// Takes off light that had entered the cloth elsewhere, and puts what is left over the share that enters
+/// where it leaves; noise grows with it.
+void take_off_beside(BesideLight beside, Frames& frames);
 
 /// Readings of frame k over `part`, which begins on an even column: a view a plane, (0, 0) at the part's
 /// corner. Those of a mosaic, with its brackets, are made in `scratch`, which is at least as large as the

@@ -13,6 +13,7 @@
 #include "core/rig/session.h"
 #include "core/solve/solve_parts.h"
 #include "solver/method.h"
+#include "solver/transport/cloth_spread.h"
 
 namespace weft::solve {
 
@@ -43,6 +44,8 @@ struct SolvePlan {
   std::vector<std::string> assumed;
   solver::Extent extent = solver::Extent::kTiles;  ///< of the level that will be solved by
   std::shared_ptr<const SolvePlan> second_pose;    ///< in which the lobe is sought too; null: none
+
+  solver::ClothSpread cloth_spread;  ///< that is to be undone; share 0: none
 
   bool asks_frames = false;  ///< whether frames and dark shot are asked if they lie: those of a cloth are
 

@@ -80,6 +80,8 @@ Json inputs_of(const SolveInput& input, const SolveOptions& options) {
   if (!options.deblur) inputs["deblur"] = false;
   if (!options.registration) inputs["registration"] = false;
   if (options.condition) inputs["condition"] = true;
+  if (options.cloth_spread.share > 0)
+    inputs["cloth_spread"] = {options.cloth_spread.share, options.cloth_spread.mean_mm};
   return inputs;
 }
 
@@ -490,6 +492,7 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
   if (!plan) return std::move(plan).error();
   plan->extent = method->extent;
   plan->asks_frames = true;
+  plan->cloth_spread = options.cloth_spread;
   if (!options.second_pose.empty()) {
     Result<void> second = plan_second_pose(options.second_pose, *method, input, *plan);
     if (!second) return std::move(second).error();
@@ -510,6 +513,7 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   Result<SolvePlan> plan = plan_photos(photos);
   if (!plan) return plan.error();
   plan->asks_frames = true;
+  plan->cloth_spread = options.cloth_spread;
   Result<SolveReport> report = solve(*method, *plan, options, context);
   if (!report) return report;
   std::optional<double> mm_per_pixel = photos.reading.mm_per_pixel;

@@ -33,7 +33,8 @@ struct SolveOptions {
   /// Id of the plan of a batch that asks for it: the solve then waits until it is accepted, or asked for
   /// without a plan (solve/session/current.h).
   std::string plan = {};
-  bool condition = false;  ///< also writes condition.exr (solve/files/condition_map.h)
+  solver::ClothSpread cloth_spread = {};  ///< that a person knows of the cloth, and which is undone
+  bool condition = false;                 ///< also writes condition.exr (solve/files/condition_map.h)
   /// What was said of it before: solve.json keeps it beside what was taken. No part of the id.
   std::optional<SolvePrice> foretold = {};
 };

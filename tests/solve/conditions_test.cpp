@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -290,6 +291,54 @@ TEST(Conditions, ArePutRightAndToldInThePhotographs) {
   EXPECT_EQ(seconds, 0) << "their caller holds the watch";
   EXPECT_TRUE(doubts.empty());
   EXPECT_TRUE(assumed.empty());
+}
+
+// What is seen of light that rises and falls along rows, of which a third leaves a pixel or two away.
+constexpr solver::ClothSpread kSpread = {0.3, 0.4};
+constexpr double kPixel_mm = 0.1;
+double fallen(int x) {
+  return 1 + 0.5 * std::cos(std::numbers::pi * 4 * (x + 0.5) / kShotSize.width);
+}
+double seen_of_spread(int x) {
+  const double t = 4 * kSpread.mean_mm / kPixel_mm * 4 / (2.0 * kShotSize.width);  // 2 pi l f
+  return 1 + (1 - kSpread.share + kSpread.share / (1 + t * t)) * (fallen(x) - 1);
+}
+
+TEST(Conditions, LightThatSpreadsInTheClothIsTakenOff) {
+  Photographs raw = mosaics(kShotSize, {}), shown = developed(kShotSize, {});
+  for (std::size_t k = 0; k < raw.count(); ++k) {
+    raw.mosaics()->frames[k] = frame_of(kShotSize, [](int x, int) { return 0.4 * seen_of_spread(x); });
+    for (int c = 0; c < 3; ++c) {
+      for (int y = 0; y < kShotSize.height; ++y) {
+        for (int x = 0; x < kShotSize.width; ++x)
+          std::get<Developed>(shown.frames).rgb[k](x, y, c) = static_cast<float>(seen_of_spread(x));
+      }
+    }
+  }
+  const double floor = raw.mosaics()->noise.floor;
+  for (Photographs* photographs : {&raw, &shown}) {
+    photographs->camera.reset();
+    solve::SolvePlan plan = plan_of(*photographs);
+    plan.is_of_rig = photographs == &raw;
+    plan.cloth_spread = kSpread;
+    FramesBeside beside;
+    if (photographs == &raw) beside.repeats = raw.mosaics()->alike({});
+    const JobContext context = {.threads = 1};
+    const Result<void> unknown = meet_conditions({plan, beside, *photographs, context});
+    ASSERT_FALSE(unknown);
+    EXPECT_EQ(unknown.error().kind, ErrorKind::kUsage);
+    plan.input.mm_per_pixel = kPixel_mm;
+    const Result<void> met = meet_conditions({plan, beside, *photographs, context});
+    ASSERT_TRUE(met) << met.error().message();
+    ASSERT_TRUE(photographs->conditions.facts.cloth_spread);
+    Image<float> scratch({kShotSize.width, 2});
+    const auto rows = readings_of(photographs->frames, 3, {0, 20, kShotSize.width, 22}, scratch.plane());
+    const float* row = rows.front().row(0);
+    const double unit = static_cast<double>(row[8]) / fallen(8);
+    for (int x = 0; x < kShotSize.width; ++x)
+      EXPECT_NEAR(static_cast<double>(row[x]) / unit, fallen(x), 0.02) << "column " << x;
+  }
+  EXPECT_NEAR(raw.mosaics()->noise.floor, floor / 0.49, 1e-9 * floor);
 }
 
 TEST(Conditions, OfPhotographsWithoutARigLeaveNoLightOut) {

@@ -7339,6 +7339,16 @@ export interface components {
             /** @description Solve although the last check of this rig's calibration did not pass before the scan: the reason, which is kept */
             accept_moved?: string;
             /**
+             * @description Share of the light that leaves the cloth beside where it entered, which is taken off: 0.2 to 0.4 of white cotton, wool and chiffon
+             * @default 0
+             */
+            cloth_spread?: number;
+            /**
+             * @description How far away it leaves, in the mean
+             * @default 0.3
+             */
+            spread_distance_mm?: number;
+            /**
              * @description How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb
              * @default auto
              * @enum {string}
@@ -7433,6 +7443,16 @@ export interface components {
             second_pose?: string;
             /** @description Solve although the last check of this rig's calibration did not pass before the scan: the reason, which is kept */
             accept_moved?: string;
+            /**
+             * @description Share of the light that leaves the cloth beside where it entered, which is taken off: 0.2 to 0.4 of white cotton, wool and chiffon
+             * @default 0
+             */
+            cloth_spread?: number;
+            /**
+             * @description How far away it leaves, in the mean
+             * @default 0.3
+             */
+            spread_distance_mm?: number;
             /**
              * @description How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb
              * @default auto

@@ -46,8 +46,9 @@ test('a cloth that moved is told by LED', () => {
 });
 
 test('conditions say what they corrected', () => {
-  const conditions = {hot_photosites: 12, veil: 0.004, drift: [{led: 1, factor: 0.98, from: 'repeat'}, {led: 2, factor: 1.01, from: 'repeat'}]};
+  const conditions = {hot_photosites: 12, veil: 0.004, cloth_spread: {share: 0.3, mean_mm: 0.25}, drift: [{led: 1, factor: 0.98, from: 'repeat'}, {led: 2, factor: 1.01, from: 'repeat'}]};
   expect(stage({conditions}, 'Bad photosites').says).toBe('12 were given their neighbours\' counts.');
   expect(stage({conditions}, 'Stray light of the lens').says).toBe('0.40 % was taken off.');
+  expect(stage({conditions}, 'Light that spreads in the cloth').says).toBe('30 % left 0.25 mm away in the mean, and was taken off.');
   expect(stage({conditions}, 'Drift of LEDs').says).toBe('Measured by repeated shots, 2.0 % at most.');
 });

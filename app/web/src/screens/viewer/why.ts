@@ -17,6 +17,7 @@ interface Conditions {
   brackets?: number;
   drift?: {led: number; factor: number; from: string}[];
   cloth_gains?: {leds: {led: number; factor: number}[]; left_out_gain: number; left_out_sigma: number};
+  cloth_spread?: {share: number; mean_mm: number};
   left_out?: {led: number; why: string}[];
 }
 
@@ -87,11 +88,16 @@ function foundOf(hot: number): string {
 }
 
 function ofConditions(conditions: Conditions): SolveStage[] {
-  const {hot_photosites: hot, veil, brackets = 0, drift = [], cloth_gains: told, left_out: leftOut = []} = conditions;
+  const {hot_photosites: hot, veil, brackets = 0, drift = [], cloth_gains: told, left_out: leftOut = [], cloth_spread: spread} = conditions;
   const most = Math.max(0, ...drift.map(({factor}) => Math.abs(factor - 1)));
   return [
     {name: 'Bad photosites', ran: hot !== undefined, says: hot === undefined ? 'Not looked for.' : foundOf(hot)},
     {name: 'Stray light of the lens', ran: veil !== undefined, says: veil === undefined ? 'Not known of this rig.' : `${percent(veil)} was taken off.`},
+    {
+      name: 'Light that spreads in the cloth',
+      ran: spread !== undefined,
+      says: spread ? `${percent(spread.share)} left ${digits(spread.mean_mm)} mm away in the mean, and was taken off.` : 'Nobody said how.',
+    },
     {name: 'Brackets', ran: brackets > 0, says: brackets > 0 ? `${brackets} shots of other exposures were joined.` : 'The session has none.'},
     {
       name: 'Drift of LEDs',

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solve/conditions/translucent_cloth.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/rig/camera.h"
+#include "core/rig/veil.h"
+#include "solver/transport/cloth_spread.h"
+
+namespace weft::solve {
+namespace {
+
+constexpr int kRowsAtATime = 64;
+
+std::optional<double> pixel_mm(const Exposures& exposures) {
+  const Photographs& photographs = exposures.photographs;
+  if (!photographs.camera) return exposures.plan.input.mm_per_pixel;
+  const double x = photographs.size.width / 2.0, y = photographs.size.height / 2.0;
+  const double height_mm = photographs.field->cloth_height_mm();
+  return length(point_on_plane(*photographs.camera, x + 1, y, height_mm) -
+                point_on_plane(*photographs.camera, x, y, height_mm));
+}
+
+CoarseLight light_of(const Frames& frames, const Planes& planes, Size size, std::size_t k, int side) {
+  CoarseLight light(size, side);
+  Image<float> scratch({size.width, kRowsAtATime});
+  for (int y0 = 0; y0 < size.height; y0 += kRowsAtATime) {
+    const Rect rows = {0, y0, size.width, std::min(y0 + kRowsAtATime, size.height)};
+    const auto views = readings_of(frames, k, rows, scratch.plane());
+    for (int plane = 0; plane < planes.count; ++plane) {
+      for (int y = rows.y0; y < rows.y1; ++y) {
+        const float* row = views[static_cast<std::size_t>(plane)].row(y - rows.y0);
+        for (int x = 0; x < size.width; ++x) light.add(x, y, planes.channel_at(plane, x, y), row[x]);
+      }
+    }
+  }
+  return light;
+}
+
+// The mean of each cell; of cells without light that of all.
+Image<float> means_of(const CoarseLight& light) {
+  const Size cells = light.cells();
+  Image<float> means(cells, 3);
+  for (int c = 0; c < 3; ++c) {
+    double sum = 0, count = 0;
+    for (int y = 0; y < cells.height; ++y) {
+      for (int x = 0; x < cells.width; ++x) sum += light.sum(x, y, c), count += light.count(x, y, c);
+    }
+    for (int y = 0; y < cells.height; ++y) {
+      for (int x = 0; x < cells.width; ++x) {
+        const double here = light.count(x, y, c);
+        means(x, y, c) =
+            static_cast<float>(here > 0 ? light.sum(x, y, c) / here : sum / std::max(count, 1.0));
+      }
+    }
+  }
+  return means;
+}
+
+// The middle of each colour's photosites within a cell.
+std::array<solver::SeenAt, 3> seen_at(const Planes& planes, int side) {
+  std::array<solver::SeenAt, 3> places;
+  for (int c = 0; planes.count == 1 && c < 3; ++c) {
+    int sites = 0;
+    solver::SeenAt sum;
+    for (const int y : {0, 1}) {
+      for (const int x : {0, 1}) {
+        if (planes.cfa.channel_at(x, y) != c) continue;
+        sum = {sum.x + x - 0.5, sum.y + y - 0.5};
+        ++sites;
+      }
+    }
+    if (sites > 0) places[static_cast<std::size_t>(c)] = {sum.x / sites / side, sum.y / sites / side};
+  }
+  return places;
+}
+
+BesideLight beside_light(const Frames& frames, const Planes& planes, Size size,
+                         const solver::ClothSpread& spread, double mean_px, const JobContext& context) {
+  BesideLight beside = {spread.share, {}};
+  const int side = solver::side_of_spread_cells(mean_px);
+  const std::size_t count = std::visit([](const auto& kind) { return kind.count(); }, frames);
+  const std::array<solver::SeenAt, 3> places = seen_at(planes, side);
+  std::vector<Image<float>> lights(count);
+  parallel_for(count, context.threads, [&](std::size_t k, int) {
+    const Image<float> seen = means_of(light_of(frames, planes, size, k, side));
+    lights[k] = solver::light_from_beside(seen, places, spread.share, mean_px / side, 1);
+  });
+  for (Image<float>& light : lights) beside.frames.emplace_back(side, std::move(light));
+  return beside;
+}
+
+}  // namespace
+
+Result<void> take_off_spread_light(const Exposures& exposures) {
+  const solver::ClothSpread& spread = exposures.plan.cloth_spread;
+  if (spread.share == 0) return {};
+  const std::optional<double> mm = pixel_mm(exposures);
+  if (!mm) {
+    return Error{ErrorKind::kUsage, "light that spreads in the cloth cannot be taken off",
+                 exposures.plan.where, "nothing says how large a pixel is on the cloth",
+                 "say it with --mm-per-pixel"};
+  }
+  Photographs& photographs = exposures.photographs;
+  const auto take_off = [&](Frames& frames) {
+    take_off_beside(beside_light(frames, photographs.planes(), photographs.size, spread, spread.mean_mm / *mm,
+                                 exposures.context),
+                    frames);
+  };
+  take_off(photographs.frames);
+  if (photographs.parallel) take_off(*photographs.parallel);
+  photographs.conditions.facts.cloth_spread = {spread.share, spread.mean_mm};
+  return {};
+}
+
+}  // namespace weft::solve

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "core/image/image.h"
+
+namespace weft::solver {
+
+/// Light that enters a yarn and leaves beside where it entered. Of what falls on a point, `share` leaves
+/// elsewhere, as diffusion with absorption in a thin sheet has it: K0(r / l) / (2 pi l^2), of mean distance
+/// pi l / 2 (Jensen et al., SIGGRAPH 2001, in a plane).
+struct ClothSpread {
+  double share = 0;  ///< 0 to kMostSpread
+  double mean_mm = 0.3;
+
+  friend bool operator==(const ClothSpread&, const ClothSpread&) = default;
+};
+inline constexpr double kMostSpread = 0.7;
+
+/// Side of the cells, pixels, that carry spread light well enough: even, and a fraction of its distance.
+int side_of_spread_cells(double mean_px);
+
+/// Where in its cell the light of a plane was seen, from the middle, in cells: one colour's photosites lie
+/// beside it.
+struct SeenAt {
+  double x = 0, y = 0;
+};
+
+/// Of light that was seen in square cells, what had entered in others: seen = (1 - share) E + share K * E,
+/// and this is share K * E in the middles of the cells. Exact where cloth of one albedo goes on as a mirror
+/// beyond the border; `mean_cells` is the mean distance in cells. Planes are spread by themselves, `places`
+/// is of each. At most `threads` threads (0: all); the same bytes for any number of them.
+Image<float> light_from_beside(const Image<float>& seen, std::span<const SeenAt> places, double share,
+                               double mean_cells, int threads);
+
+}  // namespace weft::solver
