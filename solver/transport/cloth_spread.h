@@ -27,10 +27,10 @@ struct SeenAt {
   double x = 0, y = 0;
 };
 
-/// Of light that was seen in square cells, what had entered in others: seen = (1 - share) E + share K * E,
-/// and this is share K * E in the middles of the cells. Exact where cloth of one albedo goes on as a mirror
-/// beyond the border; `mean_cells` is the mean distance in cells. Planes are spread by themselves, `places`
-/// is of each. At most `threads` threads (0: all); the same bytes for any number of them.
+/// What had entered in other cells, by light that was seen in square ones: seen = (1 - share) E + share K *
+/// E, and this is share K * E in the middles of the cells. Exact where cloth of one albedo goes on as a
+/// mirror beyond the border; `mean_cells` is the mean distance in cells. Planes are spread by themselves,
+/// `places` is of each. At most `threads` threads (0: all); the same bytes for any number of them.
 Image<float> light_from_beside(const Image<float>& seen, std::span<const SeenAt> places, double share,
                                double mean_cells, int threads);
 
