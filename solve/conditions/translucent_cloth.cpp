@@ -18,6 +18,7 @@ namespace weft::solve {
 namespace {
 
 constexpr int kRowsAtATime = 64;
+constexpr double kLeastDistance_px = 2;  // nearer than that cells do not carry the light
 
 std::optional<double> pixel_mm(const Exposures& exposures) {
   const Photographs& photographs = exposures.photographs;
@@ -109,10 +110,18 @@ Result<void> take_off_spread_light(const Exposures& exposures) {
                  "say it with --mm-per-pixel"};
   }
   Photographs& photographs = exposures.photographs;
+  const double mean_px = spread.mean_mm / *mm;
+  if (mean_px < kLeastDistance_px) {
+    photographs.conditions.warnings.push_back(fmt::format(
+        "light leaves the cloth {:.2g} pixels from where it entered; of less than {} pixels it is "
+        "left as it is",
+        mean_px, kLeastDistance_px));
+    return {};
+  }
   const auto take_off = [&](Frames& frames) {
-    take_off_beside(beside_light(frames, photographs.planes(), photographs.size, spread, spread.mean_mm / *mm,
-                                 exposures.context),
-                    frames);
+    take_off_beside(
+        beside_light(frames, photographs.planes(), photographs.size, spread, mean_px, exposures.context),
+        frames);
   };
   take_off(photographs.frames);
   if (photographs.parallel) take_off(*photographs.parallel);

@@ -8,7 +8,8 @@ namespace weft::solve {
 
 /// Takes light that had entered the cloth elsewhere from all frames, where a person said how the cloth
 /// spreads it (SolvePlan::cloth_spread). Exact for cloth of one albedo; highlights, which do not enter, come
-/// out brighter by the share. kUsage where nothing says how large a pixel is.
+/// out brighter by the share. Where it leaves less than two pixels away it is left, with a warning. kUsage
+/// where nothing says how large a pixel is.
 Result<void> take_off_spread_light(const Exposures& exposures);
 
 }  // namespace weft::solve

@@ -341,6 +341,20 @@ TEST(Conditions, LightThatSpreadsInTheClothIsTakenOff) {
   EXPECT_NEAR(raw.mosaics()->noise.floor, floor / 0.49, 1e-9 * floor);
 }
 
+TEST(Conditions, LightThatSpreadsWithinAPixelIsLeft) {
+  Photographs photographs = developed(kShotSize, {});
+  photographs.camera.reset();
+  solve::SolvePlan plan = plan_of(photographs);
+  plan.is_of_rig = false;
+  plan.cloth_spread = {0.3, 0.001};
+  plan.input.mm_per_pixel = kPixel_mm;
+  FramesBeside beside;
+  const JobContext context = {.threads = 1};
+  ASSERT_TRUE(meet_conditions({plan, beside, photographs, context}));
+  EXPECT_FALSE(photographs.conditions.facts.cloth_spread);
+  EXPECT_THAT(photographs.conditions.warnings, ElementsAre(testing::HasSubstr("it is left as it is")));
+}
+
 TEST(Conditions, OfPhotographsWithoutARigLeaveNoLightOut) {
   Photographs photographs = developed(kShotSize, {});
   for (int c = 0; c < 3; ++c) {
