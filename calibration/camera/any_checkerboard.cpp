@@ -118,7 +118,8 @@ Extent dense(const Found& found) {
   return e;
 }
 
-CornerGrid rectangle_of(const Found& found, const Extent& e) {
+// Corners that were not found are where the others say; nothing where those do not.
+std::optional<CornerGrid> rectangle_of(const Found& found, const Extent& e) {
   CornerGrid grid = {e.x1 - e.x0 + 1, e.y1 - e.y0 + 1, {}};
   std::vector<cv::Point2d> places, seen;
   for (const auto& [place, corner] : found) {
@@ -127,6 +128,7 @@ CornerGrid rectangle_of(const Found& found, const Extent& e) {
     seen.emplace_back(corner.x, corner.y);
   }
   const cv::Mat homography = cv::findHomography(places, seen);
+  if (homography.empty()) return std::nullopt;
   for (int j = e.y0; j <= e.y1; ++j) {
     for (int i = e.x0; i <= e.x1; ++i) {
       const PixelPoint* corner = find(found, {i, j});

@@ -37,11 +37,12 @@ class CoarseLight {
   Image<double> sum_, count_;
 };
 
-/// What a lens makes of the light of a frame when it spreads all of it by a Gaussian; of even light the same.
-/// Cells without light of a channel count as they would be filled by the others.
+/// Light that is spread over a frame, by its square cells.
 class SpreadLight {
  public:
-  /// `spread`: standard deviation, frame diagonals.
+  /// What a lens makes of the light of a frame when it spreads all of it by a Gaussian; of even light the
+  /// same. Cells without light of a channel count as they would be filled by the others. `spread`: standard
+  /// deviation, frame diagonals.
   SpreadLight(const CoarseLight& light, double spread);
   /// Cells of `side` pixels whose light is known: planes R, G, B.
   SpreadLight(int side, Image<float> cells);

@@ -266,6 +266,7 @@ Result<void> plan_second_pose(const fs::path& folder, const solver::MethodName& 
     return unfit(ErrorKind::kBadData,
                  "one of the two was scanned through crossed and parallel films, the other was not",
                  "scan both in the same way");
+  second->cloth_spread = plan.cloth_spread;
   plan.input.second_pose = object_of(second->input);
   plan.second_pose = std::make_shared<const SolvePlan>(std::move(*second));
   return {};
