@@ -91,8 +91,8 @@ class Builder {
 
   void add_reflection() {
     on().reflectance ? add(reflectance_pass(scene_, rig_), "reflectance") : add(lambert_pass(scene_, rig_));
-    if (on().translucency) add(translucency_pass(scene_, rig_, halos_), "translucency");
     if (on().interreflection) add(interreflection_pass(scene_, rig_), "interreflection");
+    if (on().translucency) add(translucency_pass(scene_, rig_, halos_), "translucency");
     if (on().led_drift) add(led_drift_pass(scene_, rig_), "led_drift");
     if (on().stray) add(stray_pass(scene_, rig_), "stray");
     if (on().ambient) add(ambient_pass(scene_, rig_), "ambient");

@@ -25,8 +25,10 @@ struct Halos {
 
   /// What the lens spreads into a tile.
   int of_signal() const { return field + blur + chromatic + bloom_rows; }
-  /// Where light must be known before shadows: what lights the tile by way of the cloth or through it.
-  int of_light() const { return of_signal() + std::max(bounces * bounce, translucency); }
+  /// Where light must be known before shadows: what lights the tile by way of the cloth and through it.
+  int of_light() const { return of_entered() + bounces * bounce; }
+  /// Where light must be known that enters the cloth.
+  int of_entered() const { return of_signal() + translucency; }
   int all() const { return of_light() + shadow; }
 };
 

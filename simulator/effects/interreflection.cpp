@@ -12,7 +12,7 @@ Pass bounces_pass(const Scene& scene, const Halos& halos) {
   settings.reach_mm = halos.bounce_mm;
   settings.seed = static_cast<std::uint64_t>(scene.seed);
   settings.stream = kBounceStream;
-  const int halo = halos.of_signal() + (halos.bounces - 1) * halos.bounce;
+  const int halo = halos.of_entered() + (halos.bounces - 1) * halos.bounce;
   return {"bounces", "follows light from cloth to cloth, once for all LEDs", PassStage::kSurface,
           [settings, halo](PassTile& tile) {
             if (tile.failure) return;

@@ -31,6 +31,26 @@ double share_at(const PassTile& tile, std::size_t i, const std::array<double, 2>
   return shares[tile.surface[i].yarn.is_weft];
 }
 
+/// What falls on a point: by the LED, and by way of the cloth.
+double light_at(const PassTile& tile, std::size_t i, std::size_t c) {
+  return tile.irradiance[i] + (tile.indirect.empty() ? 0 : tile.indirect[i][c]);
+}
+
+/// What leaves each point of `out_rect` that had entered elsewhere, of one channel.
+std::vector<double> left_of(const PassTile& tile, const std::vector<Carrier>& carriers, Rect out_rect,
+                            std::size_t c) {
+  std::vector<double> left(static_cast<std::size_t>(out_rect.pixels())), entered;
+  for (const Carrier& carrier : carriers) {
+    entered.clear();
+    for_each_pixel(grown(out_rect, carrier.diffusion.radius()), [&](std::size_t, int x, int y) {
+      const std::size_t i = index_in(tile.area, x, y);
+      entered.push_back(share_at(tile, i, carrier.shares) * light_at(tile, i, c));
+    });
+    carrier.diffusion.add(entered, out_rect, left);
+  }
+  return left;
+}
+
 }  // namespace
 
 Pass translucency_pass(const Scene& scene, const SceneRig& rig, const Halos& halos) {
@@ -40,26 +60,18 @@ Pass translucency_pass(const Scene& scene, const SceneRig& rig, const Halos& hal
            unit = rig.signal_of_unit(scene.camera.iso), halo = halos.of_signal()](PassTile& tile) {
             if (tile.led == 0 || tile.failure) return;
             const Rect out_rect = grown(tile.rect, halo);
-            std::vector<double> left(static_cast<std::size_t>(out_rect.pixels())), entered;
-            for (const Carrier& carrier : carriers) {
-              const Rect in_rect = grown(out_rect, carrier.diffusion.radius());
-              entered.clear();
-              for_each_pixel(in_rect, [&](std::size_t, int x, int y) {
-                const std::size_t i = index_in(tile.area, x, y);
-                entered.push_back(share_at(tile, i, carrier.shares) * tile.irradiance[i]);
-              });
-              carrier.diffusion.add(entered, out_rect, left);
-            }
             const Rgb flux = unit[static_cast<std::size_t>(tile.led - 1)];
-            for_each_pixel(out_rect, [&](std::size_t j, int x, int y) {
-              const std::size_t i = index_in(tile.area, x, y);
-              if (!tile.target.empty() && tile.target[i] != kCloth) return;
-              const double gained = left[j] - share_at(tile, i, shares) * tile.irradiance[i];
-              for (std::size_t c = 0; c < 3; ++c) {
+            std::vector<double> left;
+            for (std::size_t c = 0; c < 3; ++c) {
+              if (c == 0 || !tile.indirect.empty()) left = left_of(tile, carriers, out_rect, c);
+              for_each_pixel(out_rect, [&](std::size_t j, int x, int y) {
+                const std::size_t i = index_in(tile.area, x, y);
+                if (!tile.target.empty() && tile.target[i] != kCloth) return;
+                const double gained = left[j] - share_at(tile, i, shares) * light_at(tile, i, c);
                 double& signal = tile.signal[i][c];
                 signal = std::max(signal + tile.albedo[i][c] * gained * flux[c], 0.0);
-              }
-            });
+              });
+            }
           }};
 }
 
