@@ -14,6 +14,7 @@
 #include "bench/accuracy/accuracy_page.h"
 #include "bench/accuracy/coverage.h"
 #include "bench/accuracy/photos.h"
+#include "bench/cloths/cloths.h"
 #include "bench/program/studies.h"
 #include "bench/sanity/frame_faults.h"
 #include "bench/sanity/sanity.h"
@@ -147,6 +148,28 @@ app::Run add_photos(app::Options& options) {
                                    }}}));
 }
 
+app::Run add_cloths(app::Options& options) {
+  struct Said : ClothsOptions {
+    std::string set_name = "held-out";
+  };
+  const auto a = std::make_shared<Said>();
+  const Choice choice =
+      by_flag(options, {{"cloths",
+                         "",
+                         [a](const StudyOptions& o) {
+                           a->set = a->set_name == "tuning" ? KindSet::kChosenOn : KindSet::kHeldOut;
+                           return cloths_table(*a, o);
+                         },
+                         {.runs = 1}}});
+  add_set(options, a->set_name, "Kinds of cloth: those that methods are tuned on, or those held out");
+  options.add("--kind", &a->kind, "One kind alone, such as \"white cotton\"");
+  options.add("--method", &a->methods, "These levels alone: standard,reference").by_commas();
+  options.add_flag("--sessions", &a->as_session, "Mosaics of a calibrated rig instead of loose photographs");
+  options.add("--draws", &choice->options.runs, "Of a kind; 0 is 1").in_range(0, 1000);
+  options.add("--seed", &choice->options.seed, "Of the first draw").shows_default();
+  return run_of(choice);
+}
+
 app::Run add_sanity(app::Options& options) {
   const auto a = std::make_shared<SanityOptions>();
   const Choice choice = by_flag(
@@ -180,6 +203,10 @@ app::Verb accuracy_verb() {
 
 app::Verb explain_verb() {
   return {"explain", "Errors and seconds that solve --explain foretells against true ones", add_explain};
+}
+
+app::Verb cloths_verb() {
+  return {"cloths", "Errors of thirty-five kinds of cloth against what reports say of them", add_cloths};
 }
 
 app::Verb sanity_verb() {

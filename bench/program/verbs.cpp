@@ -246,6 +246,7 @@ std::vector<app::Verb> verbs() {
           accuracy_verb(),
           explain_verb(),
           photos_verb(),
+          cloths_verb(),
           sanity_verb(),
           frames_verb(),
           {"height", "Error, time and memory from normals to heights", add_height},
