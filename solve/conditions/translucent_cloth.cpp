@@ -12,6 +12,8 @@
 #include "core/base/parallel.h"
 #include "core/rig/camera.h"
 #include "core/rig/veil.h"
+#include "solve/conditions/cloth_windows.h"
+#include "solver/gates/told_spread.h"
 #include "solver/transport/cloth_spread.h"
 
 namespace weft::solve {
@@ -83,26 +85,39 @@ std::array<solver::SeenAt, 3> seen_at(const Planes& planes, int side) {
   return places;
 }
 
-BesideLight beside_light(const Frames& frames, const Planes& planes, Size size,
-                         const solver::ClothSpread& spread, double mean_px, const JobContext& context) {
-  BesideLight beside = {spread.share, {}};
-  const int side = solver::side_of_spread_cells(mean_px);
+BesideLight beside_light(const Frames& frames, const Planes& planes, Size size, double share, double mean_px,
+                         const JobContext& context) {
+  BesideLight beside = {share, {}};
+  const int side = solver::side_of_spread_cells(mean_px, planes.count == 1);
   const std::size_t count = std::visit([](const auto& kind) { return kind.count(); }, frames);
   const std::array<solver::SeenAt, 3> places = seen_at(planes, side);
   std::vector<Image<float>> lights(count);
   parallel_for(count, context.threads, [&](std::size_t k, int) {
     const Image<float> seen = means_of(light_of(frames, planes, size, k, side));
-    lights[k] = solver::light_from_beside(seen, places, spread.share, mean_px / side, 1);
+    lights[k] = solver::light_from_beside(seen, places, share, mean_px / side, 1);
   });
   for (Image<float>& light : lights) beside.frames.emplace_back(side, std::move(light));
   return beside;
 }
 
-}  // namespace
+// Of what share, and how many pixels away.
+struct SpreadInPixels {
+  double share = 0, mean_px = 0;
+};
 
-Result<void> take_off_spread_light(const Exposures& exposures) {
+void take_off(const Exposures& exposures, const SpreadInPixels& spread) {
+  Photographs& photographs = exposures.photographs;
+  const auto from = [&](Frames& frames) {
+    take_off_beside(beside_light(frames, photographs.planes(), photographs.size, spread.share, spread.mean_px,
+                                 exposures.context),
+                    frames);
+  };
+  from(photographs.frames);
+  if (photographs.parallel) from(*photographs.parallel);
+}
+
+Result<void> take_off_given(const Exposures& exposures) {
   const solver::ClothSpread& spread = exposures.plan.cloth_spread;
-  if (spread.share == 0) return {};
   const std::optional<double> mm = pixel_mm(exposures);
   if (!mm) {
     return Error{ErrorKind::kUsage, "light that spreads in the cloth cannot be taken off",
@@ -118,15 +133,29 @@ Result<void> take_off_spread_light(const Exposures& exposures) {
         mean_px, kLeastDistance_px));
     return {};
   }
-  const auto take_off = [&](Frames& frames) {
-    take_off_beside(
-        beside_light(frames, photographs.planes(), photographs.size, spread, mean_px, exposures.context),
-        frames);
-  };
-  take_off(photographs.frames);
-  if (photographs.parallel) take_off(*photographs.parallel);
+  take_off(exposures, {spread.share, mean_px});
   photographs.conditions.facts.cloth_spread = {spread.share, spread.mean_mm};
   return {};
+}
+
+Result<void> take_off_told(const Exposures& exposures) {
+  Photographs& photographs = exposures.photographs;
+  const ClothWindows cloth = cloth_windows(photographs, exposures.context.threads);
+  const std::optional<solver::ToldSpread> told =
+      solver::told_spread(cloth.windows, exposures.context.threads);
+  if (!told) return {};
+  const solver::ToldSpread& spread = *told;
+  const double mean_px = std::max(spread.mean_cells * cloth.cell_px, kLeastDistance_px);
+  take_off(exposures, {spread.share, mean_px});
+  photographs.sigma_slope = spread.sigma_slope;
+  photographs.conditions.facts.cloth_spread = {spread.share, mean_px * pixel_mm(exposures).value_or(0)};
+  return {};
+}
+
+}  // namespace
+
+Result<void> take_off_spread_light(const Exposures& exposures) {
+  return exposures.plan.cloth_spread.share > 0 ? take_off_given(exposures) : take_off_told(exposures);
 }
 
 }  // namespace weft::solve

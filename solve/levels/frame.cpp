@@ -119,6 +119,7 @@ Result<Photographs> half_size(const Photographs& photographs, int threads) {
   half.frames = Developed(std::move(rgb));
   half.lobe_share = photographs.lobe_share;
   half.plane_weights = photographs.plane_weights;
+  half.sigma_slope = photographs.sigma_slope;
   return half;
 }
 

@@ -119,7 +119,8 @@ std::vector<Stage> stages_of(const solver::MethodName& method, const ReferenceOp
 Stage method_stage(const solver::MethodName& method) {
   return {method.name, method.help, {}, [method](Solving& s) -> Result<void> {
             s.method = &s.keep(method.make());
-            s.bands.model = solver::ModelTraits{.is_half = method.extent == solver::Extent::kHalfSize};
+            s.bands.model = solver::ModelTraits{.is_half = method.extent == solver::Extent::kHalfSize,
+                                                .sigma_slope = s.photographs.sigma_slope};
             return {};
           }};
 }

@@ -65,6 +65,7 @@ Result<Photographs> cut(const Photographs& whole, Rect area) {
   part.albedo_scale = whole.albedo_scale;
   part.color = whole.color;
   part.plane_weights = whole.plane_weights;
+  part.sigma_slope = whole.sigma_slope;
   part.spread = whole.spread;
   part.lateral = whole.lateral;
   part.camera = whole.camera;

@@ -164,6 +164,7 @@ struct Photographs {
   std::optional<ParameterCovariance> light_covariance;  ///< where the calibration has one
   AlbedoScale albedo_scale = AlbedoScale::kRelative;
   std::array<double, 3> plane_weights = solver::kLuminance;  ///< of RGB, as of solver::TileInput
+  double sigma_slope = 0;  ///< share by which solved slopes may be off, as what the cloth spreads is not sure
   std::optional<ColorTransform> color;  ///< of solved albedo, where the calibration has one
   Conditions conditions;                ///< of all of them as they were read; a part or a half has none
 

@@ -156,7 +156,9 @@ HWY_INLINE V angle2(const Pixels& p, V slope2_of_cells, V albedo, const ModelSur
     bounced = hn::Min(bounced, hn::Mul(hn::Mul(number(kBouncesLeft_deg), albedo), hn::Sqrt(mixed2)));
   }
   const V shadowed = hn::IfThenElseZero(p.has(kShadowed), hn::Mul(number(kShadowed_deg), slope));
-  V sum2 = hn::Add(square(bounced), square(shadowed));
+  const V scaled = hn::Div(hn::Mul(number(static_cast<float>(degrees(traits.sigma_slope))), slope),
+                           hn::Add(number(1), slope2));
+  V sum2 = hn::Add(hn::Add(square(bounced), square(shadowed)), square(scaled));
   if (has_noise) {
     const float scale2 = around.degrees_a_residual * around.degrees_a_residual, robust = around.robust;
     const V misfit2 = hn::Max(p.misfit2(), number(0));

@@ -67,8 +67,9 @@ void conjugate(View<Complex> plane) {
 
 }  // namespace
 
-int side_of_spread_cells(double mean_px) {
-  return std::max(2, 2 * static_cast<int>(std::lround(length_of(mean_px) / (2 * kCellsADistance))));
+int side_of_spread_cells(double mean_px, bool of_mosaic) {
+  const int step = of_mosaic ? 2 : 1;
+  return std::max(step, step * static_cast<int>(std::lround(length_of(mean_px) / (step * kCellsADistance))));
 }
 
 Image<float> light_from_beside(const Image<float>& seen, std::span<const SeenAt> places, double share,

@@ -18,8 +18,9 @@ struct ClothSpread {
 };
 inline constexpr double kMostSpread = 0.7;
 
-/// Side of the cells, pixels, that carry spread light well enough: even, and a fraction of its distance.
-int side_of_spread_cells(double mean_px);
+/// Side of the cells, pixels, that carry spread light well enough: a fraction of its distance, and even for
+/// the light of a mosaic.
+int side_of_spread_cells(double mean_px, bool of_mosaic);
 
 /// Where in its cell the light of a plane was seen, from the middle, in cells: one colour's photosites lie
 /// beside it.

@@ -33,6 +33,7 @@ double degrees_a_residual(const LightField& field, int x, int y);
 struct ModelTraits {
   bool bounces_are_out = false;  ///< light from the cloth was taken out of the readings
   bool is_half = false;          ///< at half the size, and without a shadow mask
+  double sigma_slope = 0;        ///< all slopes may be off by this share of themselves
 };
 
 /// Square of the angle, in radians, that lies between the normal of a preview's pixel and those of the four
