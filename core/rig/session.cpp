@@ -17,13 +17,22 @@ namespace weft {
 namespace {
 
 constexpr const char* kSessionSchema = "weft.session";
-constexpr std::array<const char*, 5> kRoles = {"lit", "dark", "repeat", "bracket", "below"};
+constexpr std::array<const char*, 6> kRoles = {"lit", "dark", "repeat", "bracket", "below", "blade"};
 constexpr std::array<const char*, 3> kPolarisers = {"none", "parallel", "crossed"};
 
 bool stays_inside(const std::filesystem::path& file) {
   if (file.empty() || file.is_absolute()) return false;
   return std::none_of(file.begin(), file.end(),
                       [](const std::filesystem::path& part) { return part == ".."; });
+}
+
+// Whether the session has a shot with a blade, which its document as it was read has not.
+bool adds_blade(const Session& session) {
+  const auto shots = session.document.find("shots");
+  const bool is_known = shots != session.document.end() && std::ranges::any_of(*shots, [](const Json& shot) {
+                          return shot.value("role", "") == name_of(ShotRole::kBlade);
+                        });
+  return !is_known && std::ranges::find(session.shots, ShotRole::kBlade, &Shot::role) != session.shots.end();
 }
 
 }  // namespace
@@ -50,6 +59,7 @@ void describe(Fields& fields, Shot& s) {
   fields.require(stays_inside(s.file), "file", "must be a path inside the session");
   fields.require(s.role != ShotRole::kBelow || s.led == 0, "led", "must be 0 for a shot of the light below");
   fields.require(s.role != ShotRole::kLit || s.led != 0, "led", "must be above 0 for a lit shot");
+  fields.require(s.role != ShotRole::kBlade || s.led != 0, "led", "must be above 0 for a shot with a blade");
 }
 
 void describe(Fields& fields, Films& f) {
@@ -198,6 +208,7 @@ Result<void> write_session(const Session& session) {
     document["schema"] = fmt::format("{}/1.6", kSessionSchema);
   if (session.shutter_travel_s > 0 && !document.contains("shutter_travel_s"))
     document["schema"] = fmt::format("{}/1.7", kSessionSchema);
+  if (adds_blade(session)) document["schema"] = fmt::format("{}/1.8", kSessionSchema);
   Session written = session;
   written.document = std::move(document);
   Json json;

@@ -22,7 +22,8 @@ enum class ShotRole {
   kDark,
   kRepeat,   ///< of a LED's lit shot, or with LED 0 of the dark one: what changed in between
   kBracket,  ///< a LED at another exposure
-  kBelow     ///< the light below the cloth, at an exposure of its own
+  kBelow,    ///< the light below the cloth, at an exposure of its own
+  kBlade     ///< of a LED's lit shot, with a straight edge above the cloth that throws its shadow on it
 };
 const char* name_of(ShotRole role);  ///< "lit"
 

@@ -95,8 +95,15 @@ void describe(Fields& fields, RoomLightFacts& r) {
 }
 
 void describe(Fields& fields, ClothSpreadFacts& s) {
+  fields.value({"said",
+                "given by a person; measured in a blade's shadow and undone; not_observable there, and left "
+                "as it is"},
+               s.said);
   fields.value({"share", "Of the light that leaves beside where it entered", {}, kMustSay}, s.share);
-  fields.value({"mean_mm", "How far away, in the mean, mm", {}, kMustSay}, s.mean_mm);
+  fields.value({"share_sigma", "Standard deviation of it"}, s.share_sigma);
+  fields.value({"mean_mm", "How far away, in the mean, mm"}, s.mean_mm);
+  fields.value({"mean_sigma_mm", "Standard deviation of it, mm"}, s.mean_sigma_mm);
+  fields.value({"led", "That threw the blade's shadow", kAboveZero}, s.led);
 }
 
 void describe(Fields& fields, ConditionFacts& c) {
@@ -110,8 +117,7 @@ void describe(Fields& fields, ConditionFacts& c) {
   fields.list({"frames", "How each frame fits the others", {}, kUnlessEmpty}, c.frames);
   fields.object({"flicker", "Of light along rows", {}, kUnlessEmpty}, c.flicker);
   fields.object({"room", "Light of frames or dark shot alone", {}, kUnlessEmpty}, c.room);
-  fields.object({"cloth_spread", "Of light in the cloth, which was undone", {}, kUnlessEmpty},
-                c.cloth_spread);
+  fields.object({"cloth_spread", "Of light that spreads in the cloth", {}, kUnlessEmpty}, c.cloth_spread);
 }
 
 void describe(Fields& fields, AngleMiddle& a) {

@@ -98,7 +98,11 @@ struct RoomLightFacts {
 };
 /// How cloth spreads the light that enters it.
 struct ClothSpreadFacts {
-  double share = 0, mean_mm = 0;  ///< of the light that leaves elsewhere, and how far away
+  std::string said = "given";          ///< by a person; "measured", or "not_observable" in a blade's shadow
+  double share = 0;                    ///< of the light that leaves elsewhere
+  std::optional<double> mean_mm = {};  ///< how far away; none where it is not observable
+  std::optional<double> share_sigma = {}, mean_sigma_mm = {};  ///< of what was measured
+  std::optional<int> led = {};                                 ///< that threw the blade's shadow
 };
 /// What was found in the frames and corrected (docs/conditions.md).
 struct ConditionFacts {
@@ -111,7 +115,7 @@ struct ConditionFacts {
   std::vector<FrameFitFacts> frames;
   std::optional<RowFlickerFacts> flicker;
   std::optional<RoomLightFacts> room;
-  std::optional<ClothSpreadFacts> cloth_spread;  ///< that was undone
+  std::optional<ClothSpreadFacts> cloth_spread;  ///< that was undone, or cannot be observed
 };
 void describe(Fields& fields, ConditionFacts& conditions);
 

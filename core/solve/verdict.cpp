@@ -15,8 +15,8 @@ void describe(Fields& fields, Verdict& v) {
 }
 
 bool is_of_frames(const Verdict& verdict) {
-  constexpr std::array kNames = {"DARK_SHOT", "ROOM_LIGHT", "ROWS_FLICKER", "FRAME_IN_PART",
-                                 "FRAME_FITS_NOTHING"};
+  constexpr std::array kNames = {"DARK_SHOT",     "ROOM_LIGHT",         "ROWS_FLICKER",
+                                 "FRAME_IN_PART", "FRAME_FITS_NOTHING", "BLADE_SHADOW"};
   return std::ranges::any_of(kNames, [&](const char* name) { return verdict.name == name; });
 }
 

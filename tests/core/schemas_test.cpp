@@ -82,6 +82,15 @@ TEST(Schemas, Session1_5OfAnImport) {
   EXPECT_EQ(session->dark()->index, 0);
 }
 
+TEST(Schemas, Session1_8OfABlade) {
+  const Result<Session> session = read_session(kSchemas / "weft.session-1.8");
+  ASSERT_TRUE(session) << session.error().message();
+  ASSERT_EQ(session->shots.size(), 4U);
+  EXPECT_EQ(session->shots[3].role, ShotRole::kBlade);
+  EXPECT_EQ(session->shots[3].led, 4);
+  EXPECT_EQ(session->lit().size(), 3U) << "it is no lit shot";
+}
+
 TEST(Schemas, Calibration1WithCameraResponseAndNearLights) {
   const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1");
   ASSERT_TRUE(calibration) << calibration.error().message();

@@ -141,6 +141,21 @@ TEST(Session, TakesALedOncePerStateOfThePolariser) {
   EXPECT_EQ(session->lit(Polariser::kCrossed).size(), 2U);
 }
 
+TEST(Session, IsOfTheVersionThatHasBladesWhereItHasOne) {
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_session(small_session(folder / "")));
+  EXPECT_EQ(json_in(folder)["schema"], "weft.session/1");
+  Result<Session> session = read_session(folder / "");
+  ASSERT_TRUE(session) << session.error().message();
+  session->shots.push_back(shot_of(5, 2, ShotRole::kBlade, "raw/05_led02_blade.nef"));
+  ASSERT_TRUE(write_session(*session));
+  EXPECT_EQ(json_in(folder)["schema"], "weft.session/1.8");
+  const Result<Session> again = read_session(folder / "");
+  ASSERT_TRUE(again) << again.error().message();
+  EXPECT_EQ(again->shots.back().role, ShotRole::kBlade);
+  EXPECT_EQ(again->lit().size(), 2U);
+}
+
 TEST(Session, KeepsFieldsItDoesNotKnowWhenItIsRewritten) {
   const ScratchFolder folder;
   ASSERT_TRUE(write_session(small_session(folder / "")));
@@ -215,7 +230,7 @@ TEST(Session, NamesTheShotAndTheFieldThatIsWrong) {
     return verdict([&](Json& json) { json["shots"][2][key] = value; });
   };
   EXPECT_THAT(said_of("role", "bright"),
-              HasSubstr("shot 2: \"role\" is \"bright\"; lit, dark, repeat, bracket or below"));
+              HasSubstr("shot 2: \"role\" is \"bright\"; lit, dark, repeat, bracket, below or blade"));
   EXPECT_THAT(said_of("role", "lit"), HasSubstr("shot 2: \"led\" must be above 0 for a lit shot"));
   EXPECT_THAT(said_of("polariser", "left"),
               HasSubstr("shot 2: \"polariser\" is \"left\"; none, parallel or crossed"));
