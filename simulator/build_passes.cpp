@@ -74,6 +74,7 @@ class Builder {
     if (on().interreflection) add(bounces_pass(scene_, halos_), "interreflection");
     if (!scene_.targets.empty()) add(targets_pass(scene_, rig_, true));
     if (!scene_.balls.empty()) add(balls_pass(scene_, rig_));
+    if (rig_.blade_lies) add(blade_pass(scene_, rig_));
     if (output_ == Output::kCounts && has_photosites())
       add(photosites_pass(scene_, halos_), photosites_effect());
   }
@@ -86,6 +87,7 @@ class Builder {
     }
     if (has_own_law(scene_)) add(paper_pass(scene_));
     if (on().cast_shadows) add(cast_shadows_pass(scene_, rig_, halos_), "cast_shadows");
+    if (rig_.blade_lies) add(blade_shadow_pass(scene_));
     if (!scene_.balls.empty()) add(mirrored_lamps_pass(scene_, rig_));
   }
 

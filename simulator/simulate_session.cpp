@@ -55,7 +55,7 @@ double azimuth_deg(const SurfacePoint& point) {
 }
 
 /// The lists of passes that the shots of a session need.
-enum PassKind : std::size_t { kOfShots, kOfBrackets, kOfParallel, kPassKinds };
+enum PassKind : std::size_t { kOfShots, kOfBrackets, kOfParallel, kOfBlade, kPassKinds };
 using ShotPasses = std::array<PassList, kPassKinds>;
 
 /// One shot of a session.
@@ -83,7 +83,7 @@ Polariser first_state(const FilmSettings& films) {
 }
 
 /// In the order of capture: the LEDs, the repeat, brackets, the LEDs through parallel films where they were
-/// crossed before, the dark shot.
+/// crossed before, the dark shot, that with the blade.
 std::vector<Exposure> exposures_of(const SimulationPlan& plan) {
   const RetakeSettings& retakes = plan.scene.camera.retakes;
   const int leds = static_cast<int>(plan.rig.leds.leds.size());
@@ -100,6 +100,8 @@ std::vector<Exposure> exposures_of(const SimulationPlan& plan) {
     all.push_back({3 * leds + led, led, ShotRole::kLit, exposure_us, Polariser::kParallel, kOfParallel});
   // Developed frames have no black level.
   if (plan.scene.frames == FrameFormat::kDng) all.push_back({0, 0, ShotRole::kDark, exposure_us, state});
+  if (const int led = plan.scene.blade.led; led > 0)
+    all.push_back({4 * leds + led, led, ShotRole::kBlade, exposure_us, state, kOfBlade});
   return all;
 }
 
@@ -137,11 +139,7 @@ class SessionWriter {
     report_.exposure_us = plan_.rig.exposure_us;
     report_.passes = shot_runners_.front().costs();
     for (std::size_t kind = 1; kind < shot_runners_.size(); ++kind) {
-      const std::vector<PassCost> costs = shot_runners_[kind].costs();
-      for (std::size_t p = 0; p < costs.size(); ++p) {
-        report_.passes[p].seconds += costs[p].seconds;
-        report_.passes[p].pixels += costs[p].pixels;
-      }
+      for (const PassCost& cost : shot_runners_[kind].costs()) add_cost(cost);
     }
     report_.left_out = plan_.left_out;
     return std::move(report_);
@@ -154,6 +152,13 @@ class SessionWriter {
   }
 
  private:
+  /// To that of the pass of the same name.
+  void add_cost(const PassCost& cost) {
+    const auto same = std::ranges::find(report_.passes, cost.name, &PassCost::name);
+    if (same == report_.passes.end()) return report_.passes.push_back(cost);
+    same->seconds += cost.seconds;
+    same->pixels += cost.pixels;
+  }
   int width() const { return scene_.camera.width; }
   int height() const { return scene_.camera.height; }
   int leds() const { return static_cast<int>(plan_.rig.leds.leds.size()); }
@@ -170,7 +175,8 @@ class SessionWriter {
   std::string shot_name(int index, const char* ending) const {
     const Exposure& e = exposure(index);
     const std::string state = e.polariser == Polariser::kNone ? "" : fmt::format("_{}", name_of(e.polariser));
-    return fmt::format("{:02}_led{:02}{}{}", index, e.led, state, ending);
+    const char* blade = e.role == ShotRole::kBlade ? "_blade" : "";
+    return fmt::format("{:02}_led{:02}{}{}{}", index, e.led, state, blade, ending);
   }
   const Exposure& exposure(int index) const { return exposures_[static_cast<std::size_t>(index)]; }
 
@@ -454,10 +460,11 @@ Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& se
   }
   Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
   const Output output = plan->scene.frames == FrameFormat::kExr ? Output::kRgb : Output::kCounts;
-  SceneRig bracket_rig = plan->rig, parallel_rig = plan->rig;
+  SceneRig bracket_rig = plan->rig, parallel_rig = plan->rig, blade_rig = plan->rig;
   bracket_rig.exposure_us = bracket_exposure_us(plan->scene.camera.retakes, plan->rig, true);
   parallel_rig.lobe_share = lobe_share_of(plan->scene.films, FilmStates::kParallel);
-  const std::array<const SceneRig*, kPassKinds> rigs = {&plan->rig, &bracket_rig, &parallel_rig};
+  blade_rig.blade_lies = plan->scene.blade.led > 0 || plan->scene.blade.lies;
+  const std::array<const SceneRig*, kPassKinds> rigs = {&plan->rig, &bracket_rig, &parallel_rig, &blade_rig};
   ShotPasses of_shots;
   for (std::size_t kind = 0; kind < kPassKinds; ++kind) {
     Result<PassList> passes = build_passes(plan->scene, *rigs[kind], output);

@@ -24,6 +24,7 @@ Pass mesh_pass();
 Pass bounces_pass(const Scene& scene, const Halos& halos);
 Pass targets_pass(const Scene& scene, const SceneRig& rig, bool seen_by_camera);
 Pass balls_pass(const Scene& scene, const SceneRig& rig);  ///< numbered after the targets
+Pass blade_pass(const Scene& scene, const SceneRig& rig);
 
 // Light of the shot's LED: fills `light` and `irradiance`.
 Pass distant_light_pass(const Scene& scene, const SceneRig& rig);  ///< plain
@@ -31,6 +32,7 @@ Pass near_light_pass(const SceneRig& rig);
 Pass finite_led_pass(const Scene& scene, const SceneRig& rig);
 Pass paper_pass(const Scene& scene);
 Pass mirrored_lamps_pass(const Scene& scene, const SceneRig& rig);  ///< highlights of balls
+Pass blade_shadow_pass(const Scene& scene);
 Pass cast_shadows_pass(const Scene& scene, const SceneRig& rig, const Halos& halos);
 
 // From irradiance to signal.

@@ -29,6 +29,8 @@ struct Transport;
 
 /// What Tile::target says of the cloth.
 inline constexpr int kCloth = -1;
+/// And of the blade.
+inline constexpr int kBlade = -2;
 
 /// What the passes of one tile hand on. Every value depends on the pixel's place in the frame and on the
 /// shot, never on the tile. Each array covers one rectangle of the frame, row by row.
@@ -44,8 +46,8 @@ struct PassTile {
   std::vector<Vec3> point_mm;            ///< rig frame
   std::vector<SurfacePoint> surface;     ///< geometry of the cloth
   std::vector<Rgb> albedo;               ///< as the camera's filters see it
-  std::vector<int> target;               ///< number of the target that covers the cloth there, from 0, or
-                                         ///< kCloth; empty where there are no targets
+  std::vector<int> target;               ///< number of the target that covers the cloth there, from 0, kCloth
+                                         ///< or kBlade; empty where nothing covers any
   std::shared_ptr<Transport> transport;  ///< the mesh and what passes keep with it; none where nothing asks
   std::vector<double> openness;  ///< share of an even sky that each point sees; empty where nothing asks
 

@@ -77,7 +77,7 @@ Pass paper_pass(const Scene& scene) {
   return {"paper", "lets paper depart from Lambert's law", PassStage::kLight,
           [non_lambertian = std::move(non_lambertian)](PassTile& tile) {
             for (std::size_t i = 0; i < tile.irradiance.size(); ++i) {
-              if (tile.target[i] == kCloth) continue;
+              if (tile.target[i] < 0) continue;
               const double cosine = std::max(dot(tile.surface[i].normal, tile.light[i].direction), 0.0);
               tile.irradiance[i] *=
                   lambert_factor(non_lambertian[static_cast<std::size_t>(tile.target[i])], cosine);

@@ -62,6 +62,8 @@ constexpr SceneRule kRules[] = {
      "give spectra.chart a folder or a list of 24 spectra"},
     {"ball", [](const Scene& s) { return s.auto_to_sigma && !s.balls.empty(); },
      "the bounds of automatic effects do not know balls", "name the effects, or leave the ball out"},
+    {"blade", [](const Scene& s) { return s.auto_to_sigma && (s.blade.led > 0 || s.blade.lies); },
+     "the bounds of automatic effects do not know blades", "name the effects, or leave the blade out"},
     {"effects.finite_led", [](const Scene& s) { return s.effects.finite_led && !s.effects.near_light; },
      "without near_light every LED is infinitely far away and has no size", kNearLight},
     {"effects.relief", [](const Scene& s) { return s.effects.relief && !s.effects.near_light; },

@@ -135,6 +135,22 @@ struct SpectraSettings {
   bool operator==(const SpectraSettings&) const = default;
 };
 
+/// A thin opaque strip with straight edges, level above the cloth: how light spreads in cloth is told by the
+/// edge of its shadow.
+struct BladeSettings {
+  int led = 0;        ///< which a session photographs once more with the blade, at its end; 0: none
+  bool lies = false;  ///< in every photograph
+  double x_mm = 0;    ///< the middle of one edge
+  double y_mm = 0;
+  double turn_deg = 90;  ///< where that edge runs, from x towards y; the blade lies to its left
+  double height_mm = 8;  ///< above the cloth
+  double length_mm = 200;
+  double width_mm = 20;
+  double albedo = 0.03;
+
+  bool operator==(const BladeSettings&) const = default;
+};
+
 /// How light is traced over the cloth. `bounces` and rays make interreflection exact, at their price.
 struct TransportSettings {
   int shadow_rays = 16;  ///< cast_shadows, where LEDs are finite
@@ -229,6 +245,7 @@ struct Scene {
   std::vector<DamageSettings> damage;   ///< in this order
   std::vector<TargetSettings> targets;  ///< on the table beside or over the cloth
   std::vector<BallSettings> balls;      ///< over both
+  BladeSettings blade;                  ///< over all
   EffectSettings effects;
   /// `effects = "auto"`: the effects that run are those whose bound exceeds this many sigma of the photon
   /// noise (simulator/effects/bounds.h); `effects` above is not used.

@@ -64,6 +64,22 @@ void walk(Visitor& v, ClothPose& p) {
 }
 
 template <typename Visitor>
+void walk(Visitor& v, BladeSettings& b) {
+  v.integer(
+      {"led", "", "LED that is photographed once more with the blade, as a `blade` shot at the end; 0: none"},
+      b.led, 0, 256);
+  v.flag({"lies", "", "The blade lies there in every photograph"}, b.lies);
+  v.number({"x_mm", "mm", "The middle of one of its long edges"}, b.x_mm, kCoordinate_mm);
+  v.number({"y_mm", "mm", "The middle of one of its long edges"}, b.y_mm, kCoordinate_mm);
+  v.number({"turn_deg", "degrees", "Azimuth along that edge, from x towards y: the blade lies to its left"},
+           b.turn_deg, kAngle_deg);
+  v.number({"height_mm", "mm", "Of the blade above the cloth"}, b.height_mm, {0.1, 200});
+  v.number({"length_mm", "mm", "Of its long edges"}, b.length_mm, {1, 1e4});
+  v.number({"width_mm", "mm", "Between them"}, b.width_mm, {0.1, 1e4});
+  v.number({"albedo", "", "Of its upper side, which is matt"}, b.albedo, kShare);
+}
+
+template <typename Visitor>
 void walk(Visitor& v, Scene& s) {
   v.text({"fabric", "", "Name of the cloth in `session.json`"}, s.fabric);
   v.integer({"seed", "", "Of all random numbers: the same seed gives the same bytes"}, s.seed, 0,
@@ -112,6 +128,10 @@ void walk(Visitor& v, Scene& s) {
          "A ball over cloth and targets, which tells where lamps are. It throws no shadow and mirrors lamps "
          "alone",
          s.balls);
+  v.optional_section("blade",
+                     "A thin opaque strip with straight edges, level above the cloth: the edge of its shadow "
+                     "tells how light spreads in the cloth",
+                     s.blade);
   v.list("damage",
          "A fault that no rig should have, in the shots of some LEDs, after everything else and in the order "
          "of the file",

@@ -65,6 +65,10 @@ Result<void> check_places(const Scene& scene, const std::vector<NearLight>& leds
                    fmt::format("it is at z = {} mm and the cloth at {} mm", leds[i].position_mm.z, height_mm),
                    "raise it, or lower geometry.cloth_height_mm or pose.tilt_deg");
   }
+  if (scene.blade.led > static_cast<int>(leds.size())) {
+    return refusal(fmt::format("there is no LED {} to throw the blade's shadow", scene.blade.led),
+                   fmt::format("the scene has {}", leds.size()), "name another in blade.led");
+  }
   if (scene.camera.distance_mm > height_mm) return {};
   return refusal("the camera is not above the cloth",
                  fmt::format("it is at {} mm and the cloth at {} mm", scene.camera.distance_mm, height_mm),
@@ -180,6 +184,7 @@ Result<SceneRig> rig_of(const Scene& scene) {
   rig.sensor = sensor_of(scene.camera);
   if (Result<void> ok = place_camera(scene, rig); !ok) return ok.error();
 
+  rig.blade_lies = scene.blade.lies;
   const double reading = brightest_reading(distant_lights(rig, scene.geometry.cloth_height_mm));
   if (reading <= 0) {
     return refusal("no LED lights the table's centre", "every aim points away or every flux is 0",

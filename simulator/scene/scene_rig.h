@@ -27,7 +27,8 @@ struct SceneRig {
   /// What of the mirrored light arrives over what of the scattered does. `leds` have the flux of their
   /// scattered light: with films before them and the lens, a quarter of their own.
   double lobe_share = 1;
-  double room_share = 1;  ///< likewise of light from the room
+  double room_share = 1;    ///< likewise of light from the room
+  bool blade_lies = false;  ///< Scene::blade is over the cloth
 
   /// Signal of a reading of 1: seconds at ISO 100.
   double exposure(double iso) const { return exposure_us * 1e-6 * iso / 100; }

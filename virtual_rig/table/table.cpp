@@ -27,7 +27,7 @@ constexpr Sayable kTilt = {"tilt", 0, 80, 0}, kAzimuth = {"azimuth", -360, 360, 
                   kHeight = {"height", 0, 1000, 0}, kColumns = {"columns", 3, 100, 0},
                   kRows = {"rows", 3, 100, 0}, kMirrored = {"mirrored", 0, 1, 0},
                   kReflectance = {"reflectance", 0, 1, 0}, kFold = {"fold", 0, 45, 0},
-                  kOther = {"other", 0, 1, 0};
+                  kOther = {"other", 0, 1, 0}, kAbove = {"height", 0.1, 200, 8};
 
 simulator::CapturePose pose_of(const SaidValues& said, double above_mm) {
   return {.tilt_deg = said(kTilt),
@@ -122,6 +122,21 @@ const std::vector<Thing>& things() {
   return kThings;
 }
 
+const std::vector<Sayable>& of_blade() {
+  static const std::vector<Sayable> kOfBlade = {kX, kY, kTurn, kAbove};
+  return kOfBlade;
+}
+
+/// The same cloth under a blade.
+Scene with_blade(Scene scene, const SaidValues& said) {
+  scene.blade = {.lies = true,
+                 .x_mm = said(kX),
+                 .y_mm = said(kY),
+                 .turn_deg = said.value(kTurn).value_or(simulator::BladeSettings().turn_deg),
+                 .height_mm = said.value(kAbove).value_or(simulator::BladeSettings().height_mm)};
+  return scene;
+}
+
 /// Dyes for a cloth that has none, as grey as it is green.
 void dye(simulator::MaterialSettings& material) {
   if (material.dye || material.warp_dye || material.weft_dye) return;
@@ -154,7 +169,7 @@ Scene with_cloth_of(const Scene& other, Scene scene) {
 }
 
 Error no_such_thing(const std::string& word) {
-  std::vector<std::string> names = {"cloth [SCENE]"};
+  std::vector<std::string> names = {"cloth [SCENE]", "blade"};
   for (const Thing& each : things()) names.emplace_back(each.name);
   return {ErrorKind::kUsage, "no such thing", word,
           fmt::format("on the table can lie {}", fmt::join(names, ", ")), "choose one of these"};
@@ -177,6 +192,11 @@ Result<Scene> RigTable::with(const std::vector<std::string>& words) const {
     if (!other) return other.error();
     return with_cloth_of(*other, scene_);
   }
+  if (words[0] == "blade") {
+    const Result<SaidValues> said = SaidValues::of(of_it, of_blade());
+    if (!said) return said.error();
+    return with_blade(scene_, *said);
+  }
   const auto thing = std::find_if(things().begin(), things().end(),
                                   [&](const Thing& each) { return words[0] == each.name; });
   if (thing == things().end()) return no_such_thing(words[0]);
@@ -193,7 +213,12 @@ Result<Scene> RigTable::with(const std::vector<std::string>& words) const {
 std::vector<CommandWords> table_words() {
   std::vector<CommandWords> all = {
       {"table cloth [SCENE]", "the cloth of the rig's scene, or of another scene file, lies on the table",
-       "table cloth"}};
+       "table cloth"},
+      {"table blade ...",
+       "a blade lies level over the cloth of the rig's scene: one edge through x= and y=, turn= degrees from "
+       "x "
+       "towards y, the blade to its left, height= mm above the cloth",
+       "table blade x=3 turn=240"}};
   for (const Thing& each : things()) {
     const std::string line = fmt::format("table {}", each.name);
     all.push_back({line, "on it lies " + each.does, line});

@@ -47,6 +47,7 @@ std::vector<Case> cases() {
        plain + "weft_" + dye + "warp_albedo = 0.3\n"},
       {chart, "target", "spectra.chart", chart + spectra_section() + patches},
       {"effects = \"auto\"\n[[ball]]\n", "ball", "do not know balls", "[[ball]]\n"},
+      {"effects = \"auto\"\n[blade]\nled = 1\n", "blade", "do not know blades", "[blade]\nled = 1\n"},
       {"effects = [\"finite_led\"]\n", "effects.finite_led", "near_light",
        "effects = [\"near_light\", \"finite_led\"]\n"},
       {"effects = [\"relief\"]\n", "effects.relief", "near_light",

@@ -160,6 +160,7 @@ inline Scene everything(std::size_t number) {
   for (int i = 0; i < 24; ++i) s.spectra.chart.push_back(rising_spectrum(0.01 * i));
   s.transport = {8, 32, 3};
   s.films = {FilmStates::kBoth, 0.02, 0.8};
+  s.blade = {2, true, 3, -4, 30, 9, 150, 25, 0.05};
   s.pose = {10, 20};
   const SheetSettings sheet = {1, 70, 2, 3, 0.2, 0.25};
   s.balls = {{BallSurface::kGlossy, {4, 5, 26}, 12, 0.03, 2}};
