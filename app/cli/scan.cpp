@@ -116,11 +116,36 @@ Result<Json> ask_until_it_ends(const RigClient& client, const Json& session, Nar
   }
 }
 
+/// Who lays the blade, at this terminal, where the scan waits for that: an empty line goes on with it, the
+/// end of their input cancels it.
+class BladeLayer {
+ public:
+  explicit BladeLayer(const RigClient& client) : client_(client) {}
+
+  void follow(const Json& status) {
+    const bool is_awaited = status["phase"] == "paused" && status["role"] == name_of(ShotRole::kBlade);
+    if (is_awaited == asked_.joinable()) return;
+    asked_ = {};
+    if (!is_awaited) return;
+    note("then press Enter");
+    asked_ = std::jthread([this](const std::stop_token& done) {
+      const bool is_laid = typed_line(done).has_value();
+      if (!done.stop_requested())
+        static_cast<void>(client_.post(is_laid ? "/api/v1/scan/resume" : "/api/v1/scan/cancel"));
+    });
+  }
+
+ private:
+  const RigClient& client_;
+  std::jthread asked_;
+};
+
 /// Follows the scan of this session to its end; an interrupt cancels it first. The last status.
 Result<Json> follow(const RigClient& client, const Json& session, const CommonArguments& common) {
   const std::stop_token interrupt = stop_on_signal();
   const std::stop_callback cancel(interrupt, [&] { static_cast<void>(client.post("/api/v1/scan/cancel")); });
   Narrator narrator(common);
+  BladeLayer layer(client);
   Json last;
   const Result<void> followed = client.follow(
       [&](const RigClient::Event& event) {
@@ -128,6 +153,7 @@ Result<Json> follow(const RigClient& client, const Json& session, const CommonAr
         if (event.name != "status") return true;
         last = event.data;
         narrator.show_status(last);
+        layer.follow(last);
         return !has_ended(last);
       },
       {});

@@ -30,6 +30,7 @@ constexpr double kFarFromFull = 0.5;         // of full scale, as others let exp
 constexpr double kFarBetter = 0.6;       // of the plan's misfit, at most, for another story to be believed
 constexpr double kBetterBy = 0.002;      // and by this at least
 constexpr double kDriftWarns = 0.005;    // of a repeat's brightness
+constexpr double kHidden = 0.5;          // of the light that a blade leaves to what lies in its shadow
 constexpr double kRepeatLevel = 0.08;    // beyond it a repeat is not the same light
 constexpr double kRepeatPattern = 0.05;  // scatter of a repeat over its first, beyond noise
 constexpr double kDarkAlike = 3e-5;      // of full scale, between two dark shots: half a count of 14 bits
@@ -260,6 +261,8 @@ ShotVerdict ScanEvidence::judge(const DueShot& shot, const std::vector<double>& 
       break;
     case ShotRole::kBelow:
       return judge_below(light);
+    case ShotRole::kBlade:
+      return judge_blade(shot, light);
   }
   return judge_again(shot, light);
 }
@@ -481,6 +484,28 @@ ShotVerdict ScanEvidence::judge_below(const std::vector<double>& light) const {
   verdict.doubt = LightFinding::kDark;
   verdict.warnings.emplace_back(
       "no light comes through the cloth from below: it is dense, or the light below is out");
+  return verdict;
+}
+
+ShotVerdict ScanEvidence::judge_blade(const DueShot& shot, const std::vector<double>& light) const {
+  const Seen* first = of_led(shot.led);
+  if (first == nullptr) return {};
+  const std::vector<double> own = without_dark(light), before = without_dark(first->light);
+  int patches = 0, lit = 0, hidden = 0;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (!std::isfinite(own[i]) || !std::isfinite(before[i]) || before[i] <= kDarkTo) continue;
+    const double level = own[i] / before[i];
+    ++patches;
+    lit += std::abs(level - 1) < kRepeatLevel;
+    hidden += level < kHidden;
+  }
+  ShotVerdict verdict;
+  if (patches == 0 || (lit > 0 && hidden > 0)) return verdict;
+  verdict.finding = lit > 0 ? LightFinding::kChanged : LightFinding::kDark;
+  verdict.sentence =
+      lit > 0 ? fmt::format("no shadow of a blade lies in the light of LED {}", shot.led)
+              : fmt::format("LED {} is dark, or the blade hides the whole cloth from it", shot.led);
+  verdict.accused = {shot.index};
   return verdict;
 }
 

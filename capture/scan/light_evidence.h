@@ -62,8 +62,9 @@ struct ShotVerdict {
 ///   where it does not, forget() every shot that the verdict accuses.
 ///
 /// The dark shot is taken off what comes after it. Repeats and brackets are held against the lit frame of
-/// their LED, the dark shot at the end against the first. Frames that are full are held against what those
-/// that are not let expect of them. Where there is nothing to hold a frame against, it agrees.
+/// their LED, of which a blade hides a part, the dark shot at the end against the first. Frames that are full
+/// are held against what those that are not let expect of them. Where there is nothing to hold a frame
+/// against, it agrees.
 class ScanEvidence {
  public:
   /// Without a model only darkness, the repeat and the brackets are looked at. `solved`: the polariser's
@@ -92,6 +93,7 @@ class ScanEvidence {
   ShotVerdict judge_lit(const DueShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_other_state(const DueShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_below(const std::vector<double>& light) const;
+  ShotVerdict judge_blade(const DueShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_again(const DueShot& shot, const std::vector<double>& light) const;
   double level_of(const DueShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_full(const DueShot& shot, const std::vector<double>& light) const;

@@ -72,6 +72,10 @@ Result<ShotList> checked_shots(const ScanRequest& request, int leds_of_board, bo
     }
   }
   if (list.leds.empty()) return refuse("no LED is asked for", "the board has none", "name LEDs of the board");
+  if (list.blade && std::ranges::find(list.leds, *list.blade) == list.leds.end()) {
+    return refuse(fmt::format("LED {} cannot throw the blade's shadow", *list.blade),
+                  "it is not photographed without the blade", "name a LED that is");
+  }
   if (list.bracket && !(*list.bracket >= 0.001 && *list.bracket <= 100)) {
     return refuse("bracket is out of range", fmt::format("it is {:g}", *list.bracket), "choose 0.001 to 100");
   }

@@ -48,8 +48,10 @@ struct ScanRequest {
   bool repeat = true;             ///< the first LED and the dark shot once more at the end
   std::optional<double> bracket;  ///< each LED once more at this times the exposure, 0.001 to 100
   PolariserUse polariser;
-  bool below = false;          ///< the cloth once by the light below it
-  double below_us = 0;         ///< exposure of that; 0: metered
+  bool below = false;   ///< the cloth once by the light below it
+  double below_us = 0;  ///< exposure of that; 0: metered
+  /// This LED once more at the end, with a straight edge above the cloth that a person has laid there.
+  std::optional<int> blade;
   std::filesystem::path copy;  ///< folder for a second copy of the finished session; empty: none
   /// Instead of all that: this lit or dark shot of the finished session once more, at its exposure. The new
   /// frame gets the next number and stands for the old one, which stays. With an exposure of its own the new
@@ -129,6 +131,8 @@ struct ScanEvents {
 struct ScanControl {
   std::stop_token cancel = {};               ///< stops after the shot on its way; the session can be resumed
   const std::atomic<bool>* pause = nullptr;  ///< while true no new shot begins, all LEDs are off
+  /// Called before a shot that a person makes ready: sets `pause`, until they have. Empty: it is ready.
+  std::function<void()> wait_for_person = {};
 };
 
 /// How patient a scan is.

@@ -19,11 +19,12 @@ const double kHalfAStep = std::exp2(1.0 / 6);
 int ShotList::count() const {
   const int lit = static_cast<int>(leds.size());
   const int states = std::max(1, static_cast<int>(polariser.size()));
-  return 1 + states * lit + (repeat ? 2 : 0) + (bracket ? lit : 0) + (below ? 1 : 0);
+  return 1 + states * lit + (repeat ? 2 : 0) + (bracket ? lit : 0) + (below ? 1 : 0) + (blade ? 1 : 0);
 }
 
 ShotList asked_shots(const ScanRequest& request) {
-  return {request.leds, request.repeat, request.bracket, request.polariser.states, request.below};
+  return {request.leds,  request.repeat, request.bracket, request.polariser.states,
+          request.below, request.blade};
 }
 
 Json to_json(const ShotList& list) {
@@ -31,6 +32,7 @@ Json to_json(const ShotList& list) {
   if (list.bracket) json["bracket"] = *list.bracket;
   for (const Polariser state : list.polariser) json["polariser"].push_back(name_of(state));
   if (list.below) json["below"] = true;
+  if (list.blade) json["blade"] = *list.blade;
   return json;
 }
 
@@ -56,6 +58,7 @@ std::vector<DueShot> plan_shots(const ShotList& list, const ExposureSettings& ex
   }
   if (list.below) add(0, ShotRole::kBelow, times.below_us);
   if (list.repeat) add(0, ShotRole::kRepeat, exposure.exposure_us);
+  if (list.blade) add(*list.blade, ShotRole::kBlade, exposure.exposure_us);
   return plan;
 }
 
@@ -104,8 +107,9 @@ Result<DueShot> shot_again(const Session& session, int index, const ExposureSett
 std::string file_stem(const DueShot& shot) {
   if (shot.role == ShotRole::kBelow) return fmt::format("{:02}_below", shot.index);
   const bool has_state = shot.polariser != Polariser::kNone;
-  return fmt::format("{:02}_led{:02}{}{}", shot.index, shot.led, has_state ? "_" : "",
-                     has_state ? weft::name_of(shot.polariser) : "");
+  return fmt::format("{:02}_led{:02}{}{}{}", shot.index, shot.led, has_state ? "_" : "",
+                     has_state ? weft::name_of(shot.polariser) : "",
+                     shot.role == ShotRole::kBlade ? "_blade" : "");
 }
 
 std::vector<DueShot> missing_shots(const std::vector<DueShot>& plan, const Session& session) {
@@ -150,6 +154,8 @@ std::string name_of(const DueShot& shot) {
       return fmt::format("the bracket of LED {}", shot.led);
     case ShotRole::kBelow:
       return "the shot of the light below";
+    case ShotRole::kBlade:
+      return fmt::format("LED {} with the blade", shot.led);
     case ShotRole::kLit:
       break;
   }

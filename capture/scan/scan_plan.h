@@ -29,6 +29,7 @@ struct ShotList {
   std::optional<double> bracket;          ///< times the exposure
   std::vector<Polariser> polariser = {};  ///< states of PolariserUse
   bool below = false;                     ///< the light below the cloth
+  std::optional<int> blade = {};          ///< LED with the blade
 
   int count() const;
 };
@@ -42,9 +43,9 @@ struct OtherTimes {
 };
 
 /// The shots in order: the dark one, the LEDs, the first LED again, each LED at the bracket's time, the LEDs
-/// in the polariser's other states, the light below, the dark one again. The dark shot is the first, because
-/// whatever lights it (a lamp in the room, a LED that stays lit) lights all the others too; the last tells
-/// whether that changed.
+/// in the polariser's other states, the light below, the dark one again, the LED with the blade. The dark
+/// shot is the first, because whatever lights it (a lamp in the room, a LED that stays lit) lights all the
+/// others too; the last tells whether that changed.
 std::vector<DueShot> plan_shots(const ShotList& list, const ExposureSettings& exposure,
                                 const OtherTimes& times);
 
@@ -56,7 +57,7 @@ std::vector<DueShot> plan_of(const Session& session, const ExposureSettings& exp
 Result<DueShot> shot_again(const Session& session, int index, const ExposureSettings& exposure,
                            std::optional<double> bracket_us);
 
-/// "03_led04", "14_led01_parallel", "24_below": its file without the ending.
+/// "03_led04", "14_led01_parallel", "24_below", "26_led03_blade": its file without the ending.
 std::string file_stem(const DueShot& shot);
 
 /// The shots that the session does not have.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "capture/scan/shooter.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -110,14 +112,26 @@ Result<std::vector<double>> Shooter::shutter_times_us() {
   return times;
 }
 
-Result<void> Shooter::wait_while_paused() {
+Result<void> Shooter::wait_while_paused(const std::string& why) {
   if (!is_paused()) return {};
-  report_.phase(ScanPhase::kPaused, "paused on request; resume to go on");
+  report_.phase(ScanPhase::kPaused, why);
   while (is_paused()) {
     if (is_cancelled()) return cancelled("scan");
     std::this_thread::sleep_for(kPause);
   }
   return {};
+}
+
+Result<void> Shooter::wait_for_blade(int led) {
+  report_.change([&](ScanStatus& status) {
+    status.led = led;
+    status.role = ShotRole::kBlade;
+  });
+  if (control_.wait_for_person) control_.wait_for_person();
+  return wait_while_paused(fmt::format(
+      "lay a straight opaque edge, as a steel rule, some millimetres above the cloth, so that the "
+      "edge of its shadow under LED {} crosses the middle of the picture beside it; then resume",
+      led));
 }
 
 Result<void> Shooter::recover(const Error& error) {
@@ -232,6 +246,9 @@ Result<Photograph> Shooter::take_once(const ShotLight& wanted, const ExposureSet
 Result<Photograph> Shooter::take(const ShotLight& light, const ExposureSettings& exposure,
                                  const std::filesystem::path& file, const std::function<void()>& clear) {
   const bool is_metering = report_.phase() == ScanPhase::kMetering;
+  if (light.role == ShotRole::kBlade) {
+    if (Result<void> laid = wait_for_blade(light.led); !laid) return laid.error();
+  }
   for (int i = 1;; ++i) {
     if (Result<void> go = wait_while_paused(); !go) return go.error();
     if (is_cancelled()) return cancelled("scan");

@@ -35,7 +35,7 @@ class Report {
 /// What lights an exposure, and how the film before the lens stands.
 struct ShotLight {
   int led = 0;                     ///< from 1; 0: none
-  ShotRole role = ShotRole::kLit;  ///< kBelow: the light below
+  ShotRole role = ShotRole::kLit;  ///< kBelow: the light below; kBlade: a person is waited for
   Polariser polariser = Polariser::kNone;
   int second = 0;  ///< a LED that is lit together with `led`; 0: none
 };
@@ -77,7 +77,9 @@ class Shooter {
   Result<std::chrono::steady_clock::time_point> light(const std::vector<int>& leds,
                                                       std::chrono::duration<double> most_lit);
   Result<void> let_cool(int led, double cools_s);
-  Result<void> wait_while_paused();
+  Result<void> wait_while_paused(const std::string& why = "paused on request; resume to go on");
+  /// Until a person says that the blade lies there.
+  Result<void> wait_for_blade(int led);
   /// Whether devices answer again after `error`; else the error that ends the scan.
   Result<void> recover(const Error& error);
   Result<void> wait_for(const std::function<Result<void>()>& find);

@@ -199,7 +199,7 @@ Result<capture::ScanOutcome> RigKeeper::scan_with_devices(const capture::ScanReq
       [this](const capture::ScanStatus& status) { on_status(status); },
       [&](const capture::KeptFrame& frame) { on_kept(request, frame); },
       [&](const capture::RefusedFrame& frame) { on_refused(request, frame); }};
-  return work(request, *lent.devices.lamps, camera, events, {cancel, &pause_});
+  return work(request, *lent.devices.lamps, camera, events, {cancel, &pause_, [this] { pause_ = true; }});
 } catch (const std::exception& thrown) {
   return error_of_exception(thrown, name_of_session(request));
 }

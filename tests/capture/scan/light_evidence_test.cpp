@@ -150,6 +150,30 @@ TEST(LightEvidence, SpeaksOfALightBelowThatNothingComesThroughOf) {
                   .warnings.empty());
 }
 
+TEST(LightEvidence, AsksAgainForABladeWhoseShadowIsNotThere) {
+  simulator::Scene under_blade = woven();
+  under_blade.blade = {.lies = true, .turn_deg = 240, .height_mm = 20};
+  const test::SimulatedCloth cloth(woven()), bladed(under_blade);
+  Result<PatchLights> model = PatchLights::make(cloth.calibration(), 0);
+  ASSERT_TRUE(model) << model.error().message();
+  const PatchGrid grid = model->grid;
+  ScanEvidence evidence(grid, std::move(*model));
+  const ExposureSettings exposure = {0.8 * cloth.scene_exposure_us(), 100, 8};
+  const auto glance = [&](const test::SimulatedCloth& at, const Lighting& lighting) {
+    return evidence.glance(at.photograph(lighting, exposure.exposure_us, 1));
+  };
+  const Lighting lit = {{{1, 1.0}}, 0};
+  evidence.accept({0, 1, ShotRole::kLit, exposure}, glance(cloth, lit));
+  const DueShot shot = {1, 1, ShotRole::kBlade, exposure};
+  const ShotVerdict laid = evidence.judge(shot, glance(bladed, lit));
+  EXPECT_EQ(laid.finding, LightFinding::kAgrees) << laid.sentence;
+  const ShotVerdict not_laid = evidence.judge(shot, glance(cloth, lit));
+  EXPECT_EQ(not_laid.finding, LightFinding::kChanged);
+  EXPECT_TRUE(not_laid.may_pass());
+  EXPECT_THAT(not_laid.sentence, HasSubstr("no shadow of a blade lies in the light of LED 1"));
+  EXPECT_EQ(evidence.judge(shot, glance(bladed, {})).finding, LightFinding::kDark);
+}
+
 TEST(LightEvidence, NamesTwoSwappedLeds) {
   for (const auto& scene : {test::small_scene(), woven()}) {
     const Told t = told(scene, [](int led) { return as_planned(led == 3 ? 4 : led == 4 ? 3 : led); });

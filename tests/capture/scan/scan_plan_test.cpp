@@ -52,6 +52,18 @@ TEST(Plan, TakesOtherStatesOfThePolariserAndTheLightBelowBeforeTheLastDarkShot) 
   EXPECT_EQ(to_json(list)["polariser"], Json({"crossed", "parallel"}));
 }
 
+TEST(Plan, TakesTheLedWithTheBladeAfterAllOthers) {
+  const ShotList list = {
+      .leds = {1, 2}, .repeat = true, .bracket = {}, .polariser = {}, .below = true, .blade = 2};
+  const auto plan = plan_shots(list, {20000, 100, 8}, {0, 5000});
+  EXPECT_THAT(stems(plan), ElementsAre("00_led00", "01_led01", "02_led02", "03_led01", "04_below", "05_led00",
+                                       "06_led02_blade"));
+  EXPECT_EQ(plan.back().role, ShotRole::kBlade);
+  EXPECT_EQ(plan.back().exposure, (ExposureSettings{20000, 100, 8}));
+  EXPECT_EQ(list.count(), 7);
+  EXPECT_EQ(to_json(list)["blade"], 2);
+}
+
 TEST(Plan, FindsWhatASessionLacksInOrder) {
   const auto plan = plan_shots({{1, 2, 3}, true, {}}, {20000, 100, 8}, {});
   Session session;

@@ -57,6 +57,13 @@ void describe_shots(Fields& fields, ScanWish& wish) {
                 .option = "!--no-below"},
                wish.below);
   fields.require(!wish.below || wish.has.below, "below", "must be false: the rig file has no [below]");
+  fields.value(
+      {.name = "blade",
+       .says = "LED to be photographed once more at the end, with a straight edge above the cloth: "
+               "the scan waits until it lies there, and its shadow tells the solve how light spreads "
+               "in the cloth",
+       .range = {1, static_cast<double>(wish.has.leds)}},
+      wish.blade);
   fields.value({.name = "repeat",
                 .says = "Do not light the first LED once more at the end, to see drift",
                 .option = "!--no-repeat"},
@@ -105,6 +112,7 @@ Result<ScanWish> read_wish(const Json& body, int leds, const capture::ScanReques
 void take_shots(const ScanWish& wish, capture::ScanRequest& request) {
   if (!wish.leds.empty()) request.leds = wish.leds;
   if (wish.bracket) request.bracket = wish.bracket;
+  if (wish.blade) request.blade = wish.blade;
   request.repeat = wish.repeat;
   request.below = wish.below;
   if (wish.polariser.empty()) return;

@@ -39,6 +39,7 @@ struct ScanWish {
   std::vector<int> leds;
   bool repeat = true, below = true, copy = true, any_exposure = false;
   std::optional<double> bracket;
+  std::optional<int> blade;
   std::vector<std::string> polariser;
   std::string accept_moved, request_id;
   bool dry_run = false;  ///< nothing is to begin: only say which session it would be

@@ -28,6 +28,8 @@ BillLine purpose_of(const std::string& what, std::optional<double> bracket) {
   if (what == "bracket")
     return {what, 0, {}, "Dark cloth is read, here of albedo 0.01 by sixteen times.", 1.92, 0.45};
   if (what == "polariser") return {what, 0, {}, "What is gloss and what is not.", {}, {}};
+  if (what == "blade")
+    return {what, 0, {}, "How light spreads in the cloth is measured, here in white cotton.", 6.28, 1.72};
   return {what, 0, {}, "Light that comes through the cloth.", {}, {}};
 }
 
@@ -38,7 +40,7 @@ std::vector<BillLine> bill_of(const capture::ScanRequest& request, std::optional
   std::map<std::string, int> shots;
   for (const capture::DueShot& shot : capture::plan_shots(list, {}, {})) ++shots[kind_of(shot, list)];
   std::vector<BillLine> bill;
-  for (const char* what : {"lit", "dark", "repeat", "bracket", "polariser", "below"}) {
+  for (const char* what : {"lit", "dark", "repeat", "bracket", "polariser", "below", "blade"}) {
     if (!shots.contains(what)) continue;
     BillLine& line = bill.emplace_back(purpose_of(what, request.bracket));
     line.shots = shots.at(what);

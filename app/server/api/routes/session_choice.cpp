@@ -65,8 +65,9 @@ bool is_asked_for(const Session& session, const Json& body, const capture::Rig& 
   const Result<capture::ScanRequest> asked = read_scan_body(body, rig.leds, begun);
   return asked && asked->cloth_height_mm == begun.cloth_height_mm && asked->pose == begun.pose &&
          asked->leds == begun.leds && asked->repeat == begun.repeat && asked->bracket == begun.bracket &&
-         asked->below == begun.below && asked->polariser.states == begun.polariser.states &&
-         asked->metadata == begun.metadata && is_exposed_as(session, asked->exposure);
+         asked->below == begun.below && asked->blade == begun.blade &&
+         asked->polariser.states == begun.polariser.states && asked->metadata == begun.metadata &&
+         is_exposed_as(session, asked->exposure);
 }
 
 Result<SessionChoice> resumed(std::string name, const Session& session, const Json& body,

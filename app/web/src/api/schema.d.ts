@@ -6348,7 +6348,7 @@ export interface components {
             /** @description 0: none */
             led: number;
             /** @enum {string} */
-            role: "lit" | "dark" | "repeat" | "bracket" | "below";
+            role: "lit" | "dark" | "repeat" | "bracket" | "below" | "blade";
             file: string;
             sha256: string;
             exposure_us: number;
@@ -6593,7 +6593,7 @@ export interface components {
              * @description Of the shot that is being taken
              * @enum {string}
              */
-            role: "lit" | "dark" | "repeat" | "bracket" | "below";
+            role: "lit" | "dark" | "repeat" | "bracket" | "below" | "blade";
             /**
              * @description At that shot
              * @enum {string}
@@ -6698,7 +6698,7 @@ export interface components {
         };
         BillLine: {
             /** @enum {string} */
-            what: "lit" | "dark" | "repeat" | "bracket" | "polariser" | "below";
+            what: "lit" | "dark" | "repeat" | "bracket" | "polariser" | "below" | "blade";
             shots: number;
             /** @description By the pace of the last scan; null: not known yet */
             seconds: number | null;
@@ -7180,6 +7180,8 @@ export interface components {
              * @default true
              */
             below?: boolean;
+            /** @description LED to be photographed once more at the end, with a straight edge above the cloth: the scan waits until it lies there, and its shadow tells the solve how light spreads in the cloth */
+            blade?: number;
             /**
              * @description Off: Do not light the first LED once more at the end, to see drift
              * @default true
@@ -7338,10 +7340,7 @@ export interface components {
             second_pose?: string;
             /** @description Solve although the last check of this rig's calibration did not pass before the scan: the reason, which is kept */
             accept_moved?: string;
-            /**
-             * @description Share of the light that leaves the cloth beside where it entered, which is taken off: 0.2 to 0.4 of white cotton, wool and chiffon
-             * @default 0
-             */
+            /** @description Share of the light that leaves the cloth beside where it entered, which is taken off: 0.2 to 0.4 of white cotton, wool and chiffon, 0: none; default what a shot with a blade tells (weft scan --blade) */
             cloth_spread?: number;
             /**
              * @description How far away it leaves, in the mean
@@ -7443,10 +7442,7 @@ export interface components {
             second_pose?: string;
             /** @description Solve although the last check of this rig's calibration did not pass before the scan: the reason, which is kept */
             accept_moved?: string;
-            /**
-             * @description Share of the light that leaves the cloth beside where it entered, which is taken off: 0.2 to 0.4 of white cotton, wool and chiffon
-             * @default 0
-             */
+            /** @description Share of the light that leaves the cloth beside where it entered, which is taken off: 0.2 to 0.4 of white cotton, wool and chiffon, 0: none; default what a shot with a blade tells (weft scan --blade) */
             cloth_spread?: number;
             /**
              * @description How far away it leaves, in the mean

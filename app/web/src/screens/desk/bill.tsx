@@ -33,7 +33,7 @@ export function gainOf({without_deg, with_deg}: BillLine): string | null {
 }
 
 const names: Record<BillLine['what'], string> = {
-  lit: 'Lit', dark: 'Dark', repeat: 'Repeat', bracket: 'Bracket', polariser: 'Polariser', below: 'From below',
+  lit: 'Lit', dark: 'Dark', repeat: 'Repeat', bracket: 'Bracket', polariser: 'Polariser', below: 'From below', blade: 'Blade',
 };
 
 /** What else may be bought, asked for once: the lights, the calibration and the last scan tell it. */

@@ -45,14 +45,17 @@ export interface MoreShots {
   repeat: boolean;
   /** Each LED once more at so many times the exposure; empty: not. */
   bracket: string;
+  /** This LED once more with a blade above the cloth; empty: none. */
+  blade?: string;
 }
 
 /** As POST scan takes it: what is not said is as the rig file has it. `times_us`: those that the camera has. */
-export function scanRequestOf({fabric, id, tags, height_mm, exposure_ms}: Cloth, {repeat, bracket}: MoreShots, times_us: readonly number[] = []): Schemas['ScanRequest'] {
+export function scanRequestOf({fabric, id, tags, height_mm, exposure_ms}: Cloth, {repeat, bracket, blade = ''}: MoreShots, times_us: readonly number[] = []): Schemas['ScanRequest'] {
   const metadata = {...(id.trim() && {id: id.trim()}), ...(tagsOf(tags).length && {tags: tagsOf(tags)})};
   const {exposure_us} = chosenIn(exposure_ms, times_us);
   const height = numberOr(height_mm, null);
   const share = numberOr(bracket, null);
+  const shadow = numberOr(blade, null);
   return {
     fabric: fabric.trim(),
     repeat,
@@ -60,6 +63,7 @@ export function scanRequestOf({fabric, id, tags, height_mm, exposure_ms}: Cloth,
     ...(height !== null && {cloth_height_mm: height}),
     ...(exposure_us !== null && {exposure_us}),
     ...(share !== null && {bracket: share}),
+    ...(shadow !== null && {blade: shadow}),
   };
 }
 

@@ -8,7 +8,7 @@ import {Field} from '../../ui/field';
 import {BillView, OtherShots} from './bill';
 import {bought, cloth, say} from './cloth';
 import {millisecondsOf} from './exposure';
-import {bracket, repeats} from './preferences';
+import {blade, bracket, repeats} from './preferences';
 import {asked, chosen, proposal, times_us} from './proposal';
 
 export const exposureField = 'exposure';
@@ -50,6 +50,7 @@ function MoreShots({onSaid}: {onSaid: () => void}) {
       <div>
         {shots ? <strong>{shots.what}</strong> : <Check says="Repeat" of={repeats} />}
         <Check says="Tone at its end" of={hasTone} />
+        <Field label="Blade's LED" type="number" placeholder="none" value={blade.value} onInput={(value) => { blade.value = value; }} onEnter={onSaid} />
       </div>
       {shots ? <Button kind="quiet" onClick={() => { bought.value = null; }}>As the rig says</Button> : <Field label="Bracket" type="number" unit="×" placeholder="none" value={bracket.value} onInput={(value) => { bracket.value = value; }} onEnter={onSaid} />}
     </div>

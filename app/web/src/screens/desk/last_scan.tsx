@@ -19,7 +19,7 @@ type Frame = Session['frames'][number];
 
 function titleOf({role, led}: Frame): string {
   const lit = `LED ${led}`;
-  return {lit, dark: 'dark', repeat: led === 0 ? 'dark at the end' : `${lit} again`, bracket: `${lit} bracket`, below: 'from below'}[role];
+  return {lit, dark: 'dark', repeat: led === 0 ? 'dark at the end' : `${lit} again`, bracket: `${lit} bracket`, below: 'from below', blade: `${lit} with a blade`}[role];
 }
 
 interface AgainProps {

@@ -11,3 +11,5 @@ export const turn = kept<'0' | '180'>('turn', '0');
 export const repeats = kept<boolean>('repeat', true);
 /** A scan takes each LED once more at so many times the exposure; empty: it does not. */
 export const bracket = kept<string>('bracket', '');
+/** A scan takes this LED once more with a blade above the cloth; empty: it does not. */
+export const blade = kept<string>('blade', '');

@@ -5,7 +5,7 @@ import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/cl
 import {rig} from '../../state/rig';
 import {bought, cloth, scanRequestOf, withShots} from './cloth';
 import {chosenIn} from './exposure';
-import {bracket, repeats} from './preferences';
+import {blade, bracket, repeats} from './preferences';
 
 /** Shutter times that the camera has, rising; empty until it was asked. One list for as long as they are the same. */
 const listed = computed(() => JSON.stringify(rig.value?.devices.camera.exposures_us ?? []));
@@ -14,7 +14,7 @@ export const times_us = computed(() => JSON.parse(listed.value) as number[]);
 export const chosen = computed(() => chosenIn(cloth.value.exposure_ms, times_us.value));
 
 /** As the form and the rig file have it. */
-export const asked = computed(() => scanRequestOf(cloth.value, {repeat: repeats.value, bracket: bracket.value}, times_us.value));
+export const asked = computed(() => scanRequestOf(cloth.value, {repeat: repeats.value, bracket: bracket.value, blade: blade.value}, times_us.value));
 export const scanRequest = computed(() => (bought.value ? withShots(asked.value, bought.value) : asked.value));
 
 export interface Proposal {

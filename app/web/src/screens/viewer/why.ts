@@ -11,13 +11,22 @@ export interface SolveStage {
   says: string;
 }
 
+/** Of light in the cloth; without a distance it was left as it is. */
+interface Spread {
+  said: string;
+  share: number;
+  share_sigma?: number;
+  mean_mm?: number;
+  mean_sigma_mm?: number;
+}
+
 interface Conditions {
   hot_photosites?: number;
   veil?: number;
   brackets?: number;
   drift?: {led: number; factor: number; from: string}[];
   cloth_gains?: {leds: {led: number; factor: number}[]; left_out_gain: number; left_out_sigma: number};
-  cloth_spread?: {share: number; mean_mm: number};
+  cloth_spread?: Spread;
   left_out?: {led: number; why: string}[];
 }
 
@@ -87,6 +96,14 @@ function foundOf(hot: number): string {
   return hot === 0 ? 'None was found.' : `${hot} were given their neighbours' counts.`;
 }
 
+function spreadInWords({said, share, share_sigma, mean_mm, mean_sigma_mm}: Spread): string {
+  const sigma = (value: number | undefined, inWords: (value: number) => string) => (value === undefined ? '' : ` ± ${inWords(value)}`);
+  const amount = percent(share) + sigma(share_sigma, percent);
+  if (mean_mm === undefined) return `The blade's shadow shows none: ${amount}.`;
+  const distance = `${digits(mean_mm)}${sigma(mean_sigma_mm, digits)} mm`;
+  return `${amount} left ${distance} away in the mean${said === 'measured' ? ", as the blade's shadow tells" : ''}, and was taken off.`;
+}
+
 function ofConditions(conditions: Conditions): SolveStage[] {
   const {hot_photosites: hot, veil, brackets = 0, drift = [], cloth_gains: told, left_out: leftOut = [], cloth_spread: spread} = conditions;
   const most = Math.max(0, ...drift.map(({factor}) => Math.abs(factor - 1)));
@@ -95,8 +112,8 @@ function ofConditions(conditions: Conditions): SolveStage[] {
     {name: 'Stray light of the lens', ran: veil !== undefined, says: veil === undefined ? 'Not known of this rig.' : `${percent(veil)} was taken off.`},
     {
       name: 'Light that spreads in the cloth',
-      ran: spread !== undefined,
-      says: spread ? `${percent(spread.share)} left ${digits(spread.mean_mm)} mm away in the mean, and was taken off.` : 'Nobody said how.',
+      ran: spread?.mean_mm !== undefined,
+      says: spread ? spreadInWords(spread) : 'Nobody said how, and no shot with a blade tells.',
     },
     {name: 'Brackets', ran: brackets > 0, says: brackets > 0 ? `${brackets} shots of other exposures were joined.` : 'The session has none.'},
     {
