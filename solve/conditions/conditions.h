@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/base/job_context.h"
@@ -20,6 +21,7 @@ namespace weft::solve {
 struct FramesBeside {
   Frames repeats;
   std::vector<RawFrame> brackets;
+  std::optional<Frames> blade;
   std::vector<Photosite> known_bad;  ///< that the calibration names
 };
 

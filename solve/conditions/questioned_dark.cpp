@@ -203,7 +203,9 @@ class DarkShot {
   std::string again() const { return how_again(exposures_, 0); }
   void say(Verdict verdict) {
     lend(std::get<Mosaics>(exposures_.beside.repeats));
-    if (photographs_.parallel) lend(std::get<Mosaics>(*photographs_.parallel));
+    for (std::optional<Frames>* more : {&photographs_.parallel, &exposures_.beside.blade}) {
+      if (*more) lend(std::get<Mosaics>(**more));
+    }
     photographs_.conditions.of_frames.push_back(std::move(verdict));
   }
   void lend(Mosaics& others) const {

@@ -12,6 +12,7 @@
 #include "core/base/parallel.h"
 #include "core/rig/camera.h"
 #include "core/rig/veil.h"
+#include "solve/conditions/bladed_frame.h"
 #include "solve/conditions/cloth_windows.h"
 #include "solver/gates/told_spread.h"
 #include "solver/transport/cloth_spread.h"
@@ -85,8 +86,8 @@ std::array<solver::SeenAt, 3> seen_at(const Planes& planes, int side) {
   return places;
 }
 
-BesideLight beside_light(const Frames& frames, const Planes& planes, Size size, double share, double mean_px,
-                         const JobContext& context) {
+BesideLight beside_light(const Frames& frames, const Planes& planes, Size size,
+                         double share, double mean_px, const JobContext& context) {
   BesideLight beside = {share, {}};
   const int side = solver::side_of_spread_cells(mean_px, planes.count == 1);
   const std::size_t count = std::visit([](const auto& kind) { return kind.count(); }, frames);
@@ -100,62 +101,103 @@ BesideLight beside_light(const Frames& frames, const Planes& planes, Size size, 
   return beside;
 }
 
-// Of what share, and how many pixels away.
-struct SpreadInPixels {
-  double share = 0, mean_px = 0;
+// How the cloth spreads light, as it is said, and how sure slopes are once it is undone.
+struct Spreading {
+  ClothSpreadFacts facts;
+  double mean_px = 0;      // 0: there is nothing to undo
+  double sigma_slope = 0;  // share of them
 };
 
-void take_off(const Exposures& exposures, const SpreadInPixels& spread) {
-  Photographs& photographs = exposures.photographs;
-  const auto from = [&](Frames& frames) {
-    take_off_beside(beside_light(frames, photographs.planes(), photographs.size, spread.share, spread.mean_px,
-                                 exposures.context),
-                    frames);
-  };
-  from(photographs.frames);
-  if (photographs.parallel) from(*photographs.parallel);
+// What the blade's shadow tells; none where it cannot be read, which is said.
+std::optional<Spreading> told_by_blade(const Exposures& exposures, double mm) {
+  const Result<solver::BladeShadow> shadow = read_bladed_frame(exposures, mm);
+  if (!shadow) {
+    const Error& error = shadow.error();
+    exposures.photographs.conditions.of_frames.push_back(
+        {"BLADE_SHADOW",
+         fmt::format("How the cloth spreads light was not measured: {}, in {}", error.why, error.where),
+         error.remedy});
+    return std::nullopt;
+  }
+  const double share = shadow->spread.share, mean_mm = shadow->spread.mean_mm;
+  Spreading spreading;
+  spreading.facts = {.said = "not_observable",
+                     .share = share,
+                     .share_sigma = shadow->share_sigma,
+                     .led = exposures.plan.blade->led};
+  if (!shadow->tells() || mean_mm < kLeastDistance_px * mm) return spreading;
+  spreading.facts.said = "measured";
+  spreading.facts.mean_mm = mean_mm;
+  spreading.facts.mean_sigma_mm = shadow->mean_sigma_mm;
+  spreading.mean_px = mean_mm / mm;
+  // What is spread far has no slope, and all else keeps the rest of the share.
+  spreading.sigma_slope = shadow->share_sigma / (1 - share);
+  return spreading;
 }
 
-Result<void> take_off_given(const Exposures& exposures) {
-  const solver::ClothSpread& spread = exposures.plan.cloth_spread;
+// What a person said of it; none where it is nothing, or too near, which is said.
+std::optional<Spreading> told_by_person(const Exposures& exposures, double mm) {
+  const solver::ClothSpread& spread = *exposures.plan.cloth_spread;
+  const double mean_px = spread.mean_mm / mm;
+  if (spread.share == 0) return std::nullopt;
+  if (mean_px >= kLeastDistance_px)
+    return Spreading{{.share = spread.share, .mean_mm = spread.mean_mm}, mean_px, 0};
+  exposures.photographs.conditions.warnings.push_back(
+      fmt::format("light leaves the cloth {:.2g} pixels from where it entered; of less than {} pixels it is "
+                  "left as it is",
+                  mean_px, kLeastDistance_px));
+  return std::nullopt;
+}
+
+// What its own photographs tell of it; none where they tell of none.
+std::optional<Spreading> told_by_cloth(const Exposures& exposures, std::optional<double> mm) {
+  const int threads = exposures.context.threads;
+  const ClothWindows cloth = cloth_windows(exposures.photographs, threads);
+  const std::optional<solver::ToldSpread> told = solver::told_spread(cloth.windows, threads);
+  if (!told) return std::nullopt;
+  const double mean_px = std::max(told->mean_cells * cloth.cell_px, kLeastDistance_px);
+  Spreading spreading = {{.said = "told", .share = told->share, .share_sigma = told->sigma_share},
+                         mean_px,
+                         told->sigma_slope};
+  if (mm) spreading.facts.mean_mm = mean_px * *mm;
+  return spreading;
+}
+
+Result<std::optional<Spreading>> told_spreading(const Exposures& exposures) {
+  const SolvePlan& plan = exposures.plan;
   const std::optional<double> mm = pixel_mm(exposures);
-  if (!mm) {
-    return Error{ErrorKind::kUsage, "light that spreads in the cloth cannot be taken off",
-                 exposures.plan.where, "nothing says how large a pixel is on the cloth",
-                 "say it with --mm-per-pixel"};
+  if ((plan.cloth_spread && plan.cloth_spread->share > 0) || plan.blade) {
+    if (!mm) {
+      return Error{ErrorKind::kUsage, "light that spreads in the cloth cannot be taken off", plan.where,
+                   "nothing says how large a pixel is on the cloth", "say it with --mm-per-pixel"};
+    }
   }
-  Photographs& photographs = exposures.photographs;
-  const double mean_px = spread.mean_mm / *mm;
-  if (mean_px < kLeastDistance_px) {
-    photographs.conditions.warnings.push_back(fmt::format(
-        "light leaves the cloth {:.2g} pixels from where it entered; of less than {} pixels it is "
-        "left as it is",
-        mean_px, kLeastDistance_px));
-    return {};
+  if (plan.cloth_spread) return mm ? told_by_person(exposures, *mm) : std::optional<Spreading>();
+  if (plan.blade) {
+    if (std::optional<Spreading> told = told_by_blade(exposures, *mm)) return told;
   }
-  take_off(exposures, {spread.share, mean_px});
-  photographs.conditions.facts.cloth_spread = {spread.share, spread.mean_mm};
-  return {};
-}
-
-Result<void> take_off_told(const Exposures& exposures) {
-  Photographs& photographs = exposures.photographs;
-  const ClothWindows cloth = cloth_windows(photographs, exposures.context.threads);
-  const std::optional<solver::ToldSpread> told =
-      solver::told_spread(cloth.windows, exposures.context.threads);
-  if (!told) return {};
-  const solver::ToldSpread& spread = *told;
-  const double mean_px = std::max(spread.mean_cells * cloth.cell_px, kLeastDistance_px);
-  take_off(exposures, {spread.share, mean_px});
-  photographs.sigma_slope = spread.sigma_slope;
-  photographs.conditions.facts.cloth_spread = {spread.share, mean_px * pixel_mm(exposures).value_or(0)};
-  return {};
+  return told_by_cloth(exposures, mm);
 }
 
 }  // namespace
 
 Result<void> take_off_spread_light(const Exposures& exposures) {
-  return exposures.plan.cloth_spread.share > 0 ? take_off_given(exposures) : take_off_told(exposures);
+  const Result<std::optional<Spreading>> told = told_spreading(exposures);
+  if (!told) return told.error();
+  if (!*told) return {};
+  const Spreading& spreading = **told;
+  Photographs& photographs = exposures.photographs;
+  photographs.conditions.facts.cloth_spread = spreading.facts;
+  photographs.sigma_slope = spreading.sigma_slope;
+  if (spreading.mean_px == 0) return {};
+  const auto take_off = [&](Frames& frames) {
+    take_off_beside(beside_light(frames, photographs.planes(), photographs.size, spreading.facts.share,
+                                 spreading.mean_px, exposures.context),
+                    frames);
+  };
+  take_off(photographs.frames);
+  if (photographs.parallel) take_off(*photographs.parallel);
+  return {};
 }
 
 }  // namespace weft::solve

@@ -166,7 +166,8 @@ Result<void> read_mosaics(const SolvePlan& plan, const JobContext& context, Phot
   mosaics.inside = std::move(*mask);
   beside.repeats = mosaics.alike(take(*frames, plan.repeats.size()));
   if (!plan.parallel.empty()) photographs.parallel = mosaics.alike(take(*frames, plan.parallel.size()));
-  beside.brackets = std::move(*frames);
+  beside.brackets = take(*frames, plan.brackets.size());
+  if (plan.blade) beside.blade = mosaics.alike(std::move(*frames));
   photographs.frames = std::move(mosaics);
   if (!plan.calibration.hot_picture) return {};
   Result<std::vector<Photosite>> known = photosites_named_by(*plan.calibration.hot_picture, plan.size);
@@ -244,7 +245,8 @@ Result<void> read_developed(const SolvePlan& plan, const JobContext& context, Ph
   }
   photographs.frames = Developed(std::move(lit), on_disk);
   beside.repeats = Developed(take(*frames, plan.repeats.size()), on_disk);
-  if (!plan.parallel.empty()) photographs.parallel = Developed(std::move(*frames), on_disk);
+  if (!plan.parallel.empty()) photographs.parallel = Developed(take(*frames, plan.parallel.size()), on_disk);
+  if (plan.blade) beside.blade = Developed(std::move(*frames), on_disk);
   return {};
 }
 

@@ -89,27 +89,30 @@ void choose_parallel(SolvePlan& plan) {
   }
 }
 
-// The repeats and brackets of the lit shots, with a warning for each that says nothing.
+// The repeats, brackets and the last blade of the lit shots, with a warning for each that says nothing.
 void choose_more(SolvePlan& plan) {
   const Shot& lit = plan.lit.front();
   const std::optional<Response>& response = plan.calibration.response;
   for (const Shot& shot : plan.session.shots) {
     const bool is_repeat = shot.role == ShotRole::kRepeat;
     const bool is_bracket = shot.role == ShotRole::kBracket;
+    const bool is_blade = shot.role == ShotRole::kBlade;
     const bool is_of_dark = is_repeat && shot.led == 0;
-    if ((!is_repeat && !is_bracket) || is_of_dark) continue;
+    if ((!is_repeat && !is_bracket && !is_blade) || is_of_dark) continue;
     if (shot.superseded_by || shot.polariser != lit.polariser) continue;
     const auto leave_out = [&](const std::string& why) {
       plan.warnings.push_back(fmt::format("{} was left out: {}", shot.file, why));
     };
     if (std::none_of(plan.lit.begin(), plan.lit.end(), [&](const Shot& s) { return s.led == shot.led; })) {
       leave_out(fmt::format("no lit shot of LED {} is solved", shot.led));
-    } else if (shot.iso != lit.iso || (is_repeat && shot.exposure_us != lit.exposure_us)) {
+    } else if (shot.iso != lit.iso || (!is_bracket && shot.exposure_us != lit.exposure_us)) {
       leave_out(fmt::format("it was taken at {}, ISO {}, the lit shots at {}, ISO {}",
                             exposure_words(shot.exposure_us), shot.iso, exposure_words(lit.exposure_us),
                             lit.iso));
     } else if (is_repeat) {
       plan.repeats.push_back(shot);
+    } else if (is_blade) {
+      plan.blade = shot;
     } else if (!plan.raw) {
       leave_out("brackets are merged by the noise of raw frames, and these are developed");
     } else if (!response || !response->exposure_ratio(shot.exposure_us, lit.exposure_us)) {

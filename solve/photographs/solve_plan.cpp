@@ -9,6 +9,7 @@ std::vector<Shot> SolvePlan::frames() const {
   all.insert(all.end(), repeats.begin(), repeats.end());
   all.insert(all.end(), parallel.begin(), parallel.end());
   all.insert(all.end(), brackets.begin(), brackets.end());
+  if (blade) all.push_back(*blade);
   return all;
 }
 

@@ -29,6 +29,7 @@ struct SolvePlan {
   std::optional<Shot> dark;
   std::vector<Shot> repeats;   ///< second shots of LEDs in `lit`
   std::vector<Shot> brackets;  ///< shots of LEDs in `lit` whose exposure ratio the calibration measured
+  std::optional<Shot> blade;   ///< of a LED in `lit`, with a blade above the cloth
   Size size;
   bool raw = true;                        ///< mosaics; else linear TIFF, PNG or EXR
   int orientation = 1;                    ///< that developed photographs are turned by (as_shown())
@@ -45,7 +46,9 @@ struct SolvePlan {
   solver::Extent extent = solver::Extent::kTiles;  ///< of the level that will be solved by
   std::shared_ptr<const SolvePlan> second_pose;    ///< in which the lobe is sought too; null: none
 
-  solver::ClothSpread cloth_spread;  ///< that is to be undone; share 0: none
+  /// That is to be undone, as a person says; share 0: none. Else as the blade's shadow tells, where there is
+  /// one.
+  std::optional<solver::ClothSpread> cloth_spread;
 
   bool asks_frames = false;  ///< whether frames and dark shot are asked if they lie: those of a cloth are
 
@@ -53,7 +56,7 @@ struct SolvePlan {
   std::filesystem::path solves;  ///< the folder that solves go to
   std::filesystem::path truth;   ///< normal.exr of a simulated session; else empty
 
-  /// All shots whose frames are read: lit, dark, repeats, parallel, brackets.
+  /// All shots whose frames are read: lit, dark, repeats, parallel, brackets, blade.
   std::vector<Shot> frames() const;
   std::vector<std::filesystem::path> files() const;  ///< theirs
   /// The number of each lit shot's light.

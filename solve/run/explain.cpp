@@ -326,7 +326,7 @@ Result<Ladder> explain_plan(const Result<SolvePlan>& plan, const SolveOptions& o
   Stopwatch watch;
   SolvePlan asked = *plan;
   asked.asks_frames = true;
-  asked.cloth_spread = options.cloth_spread;
+  asked.cloth_spread = said_spread(options);
   Result<Photographs> photographs = load_photographs(asked, context);
   if (!photographs) return std::move(photographs).error();
   return explain(std::move(*photographs), plan->is_of_rig, watch.lap(), options, wanted, context);

@@ -119,16 +119,16 @@ void describe_readings(Fields& fields, SolveRequest& r) {
                         "scan: the reason, which is kept",
                 .is_sentence = true},
                r.accept_moved);
-  solver::ClothSpread& spread = r.options.cloth_spread;
   fields.value(
       {.name = "cloth_spread",
        .says = "Share of the light that leaves the cloth beside where it entered, which is taken off: "
-               "0.2 to 0.4 of white cotton, wool and chiffon",
+               "0.2 to 0.4 of white cotton, wool and chiffon, 0: none; default what a shot with a blade "
+               "tells (weft scan --blade)",
        .range = {0, solver::kMostSpread}},
-      spread.share);
+      r.options.cloth_spread);
   fields.value(
       {.name = "spread_distance_mm", .says = "How far away it leaves, in the mean", .range = {0.001, 5}},
-      spread.mean_mm);
+      r.options.spread_distance_mm);
   fields.need("spread_distance_mm", "cloth_spread");
   for (const char* of_session : {"calibration", "second_pose", "accept_moved"})
     fields.need(of_session, "session");

@@ -80,8 +80,7 @@ Json inputs_of(const SolveInput& input, const SolveOptions& options) {
   if (!options.deblur) inputs["deblur"] = false;
   if (!options.registration) inputs["registration"] = false;
   if (options.condition) inputs["condition"] = true;
-  if (options.cloth_spread.share > 0)
-    inputs["cloth_spread"] = {options.cloth_spread.share, options.cloth_spread.mean_mm};
+  if (const auto spread = said_spread(options)) inputs["cloth_spread"] = {spread->share, spread->mean_mm};
   return inputs;
 }
 
@@ -478,6 +477,11 @@ Result<SolveReport> solve(const solver::MethodName& method, const SolvePlan& pla
 
 }  // namespace
 
+std::optional<solver::ClothSpread> said_spread(const SolveOptions& options) {
+  if (!options.cloth_spread) return std::nullopt;
+  return solver::ClothSpread{*options.cloth_spread, options.spread_distance_mm};
+}
+
 std::string id_of_solve(const SolvePlan& plan, const SolveOptions& options) {
   return product_id(inputs_of(plan.input, options));
 }
@@ -492,7 +496,7 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
   if (!plan) return std::move(plan).error();
   plan->extent = method->extent;
   plan->asks_frames = true;
-  plan->cloth_spread = options.cloth_spread;
+  plan->cloth_spread = said_spread(options);
   if (!options.second_pose.empty()) {
     Result<void> second = plan_second_pose(options.second_pose, *method, input, *plan);
     if (!second) return std::move(second).error();
@@ -513,7 +517,7 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   Result<SolvePlan> plan = plan_photos(photos);
   if (!plan) return plan.error();
   plan->asks_frames = true;
-  plan->cloth_spread = options.cloth_spread;
+  plan->cloth_spread = said_spread(options);
   Result<SolveReport> report = solve(*method, *plan, options, context);
   if (!report) return report;
   std::optional<double> mm_per_pixel = photos.reading.mm_per_pixel;

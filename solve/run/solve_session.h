@@ -33,11 +33,15 @@ struct SolveOptions {
   /// Id of the plan of a batch that asks for it: the solve then waits until it is accepted, or asked for
   /// without a plan (solve/session/current.h).
   std::string plan = {};
-  solver::ClothSpread cloth_spread = {};  ///< that a person knows of the cloth, and which is undone
-  bool condition = false;                 ///< also writes condition.exr (solve/files/condition_map.h)
+  std::optional<double> cloth_spread = {};  ///< share, as of SolvePlan::cloth_spread; none: nobody said it
+  double spread_distance_mm = solver::ClothSpread().mean_mm;  ///< that the share goes, in the mean
+  bool condition = false;  ///< also writes condition.exr (solve/files/condition_map.h)
   /// What was said of it before: solve.json keeps it beside what was taken. No part of the id.
   std::optional<SolvePrice> foretold = {};
 };
+
+/// How the cloth spreads light, as a person says.
+std::optional<solver::ClothSpread> said_spread(const SolveOptions& options);
 
 struct SolveSeconds {
   double read = 0, prepare = 0, solve = 0, write = 0, pictures = 0, report = 0, sync = 0, total = 0;

@@ -80,7 +80,7 @@ bool is_wanted(const Session& today, const std::vector<const Shot*>& lit, const 
   const auto same_led = std::ranges::find(lit, shot.led, &Shot::led);
   if (same_led == lit.end()) return shot.role == ShotRole::kDark && &shot == today.dark();
   if (std::ranges::find(lit, &shot) != lit.end()) return true;
-  if (shot.role == ShotRole::kRepeat)
+  if (shot.role == ShotRole::kRepeat || shot.role == ShotRole::kBlade)
     return is_alike(shot, **same_led) && shot.exposure_us == (*same_led)->exposure_us;
   if (shot.role == ShotRole::kBracket) {
     return is_alike(shot, **same_led) && std::ranges::any_of(today.shots, [&](const Shot& other) {
