@@ -121,6 +121,13 @@ TEST(BladeShadow, TellsNothingOfClothThatSpreadsNoLight) {
                                 << shadow->spread.mean_mm << " mm";
 }
 
+TEST(BladeShadow, TellsNothingWhereTheBladeHidesIt) {
+  BladedCloth cloth;
+  cloth.blade_mm = 0, cloth.of_blade = 0.04;
+  const Result<BladeShadow> shadow = read_blade_shadow(blade_cells_of(cloth));
+  EXPECT_FALSE(shadow && shadow->tells()) << shadow->spread.share << " +- " << shadow->share_sigma;
+}
+
 TEST(BladeShadow, IsRefusedWhereNoStraightShadowCrossesTheCloth) {
   BladedCloth bare;
   bare.has_blade = false;
