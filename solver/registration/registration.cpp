@@ -17,9 +17,14 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using Block = Eigen::Matrix<double, 2, 3>;
 
 constexpr int kMostRounds = 15;
-constexpr double kDone_px = 0.002;
+constexpr double kDone_px = 0.002, kSettled_px = 10 * kDone_px;
+// Rounds after which it shows whether they settle.
+constexpr int kLeastRounds = 3;
+// Where a round finds all shots within so many sigmas of each other, half of what counts, it is the last.
+constexpr double kStill_sigmas = 1.5;
 // Signal is believed in where it adds this share to the energy of noisy gradients.
 constexpr double kLeastSignal = 0.1;
 constexpr double kSignificant_sigmas = 3;  // of a component
@@ -38,14 +43,10 @@ class Layout {
   Eigen::Index unknowns() const { return 3 * shots_; }
   // Shots whose parameters are solved together.
   Eigen::Index group() const { return shots_ > kMostTogether ? 1 : std::max<Eigen::Index>(shots_, 1); }
-  // Displacements (x, y) of a group's shots in a tile from its parameters.
-  MatrixXd jacobian(std::size_t tile) const {
-    MatrixXd j = MatrixXd::Zero(2 * group(), 3 * group());
-    for (Eigen::Index k = 0; k < group(); ++k) {
-      j(2 * k, 3 * k) = j(2 * k + 1, 3 * k + 1) = 1;
-      j(2 * k, 3 * k + 2) = y_[tile] / corner_px_;
-      j(2 * k + 1, 3 * k + 2) = -x_[tile] / corner_px_;
-    }
+  // Displacement (x, y) of a shot in a tile from its parameters; that of all shots has one such block each.
+  Block jacobian(std::size_t tile) const {
+    Block j = Block::Identity();
+    j.col(2) << y_[tile] / corner_px_, -x_[tile] / corner_px_;
     return j;
   }
   ClothShift shift(const VectorXd& parameters, Eigen::Index k) const {
@@ -83,6 +84,19 @@ struct Whole {
   double chi2 = 0, freedom = 0, floor = 0;
 };
 
+// J^T M J by blocks, of the lower triangle.
+void add_information(const GroupInformation& known, const Block& j, Group& group) {
+  const Eigen::Matrix3d noise = j.transpose() * j;
+  for (Eigen::Index k = 0; k < known.noise.rows(); ++k) {
+    for (Eigen::Index c = 0; c <= k; ++c) {
+      Eigen::Matrix2d pair = known.information.block<2, 2>(2 * k, 2 * c);
+      if (c == k) pair(0, 1) = pair(1, 0);
+      group.information.block<3, 3>(3 * k, 3 * c) += j.transpose() * pair * j;
+      group.noise.block<3, 3>(3 * k, 3 * c) += known.noise(k, c) * noise;
+    }
+  }
+}
+
 Whole gather(const std::vector<TileSystem>& systems, const Layout& layout) {
   const Eigen::Index n = 3 * layout.group(), displacements = 2 * layout.group();
   Whole w;
@@ -92,15 +106,15 @@ Whole gather(const std::vector<TileSystem>& systems, const Layout& layout) {
   for (std::size_t t = 0; t < systems.size(); ++t) {
     const TileSystem& s = systems[t];
     if (s.points == 0) continue;
-    const MatrixXd j = layout.jacobian(t);
+    const Block j = layout.jacobian(t);
     for (std::size_t g = 0; g < w.groups.size(); ++g) {
       Group& group = w.groups[g];
-      const GroupInformation& known = s.groups[g];
-      group.information += j.transpose() * known.information.selfadjointView<Eigen::Lower>() * j;
-      group.noise += j.transpose() * known.noise.selfadjointView<Eigen::Lower>() * j;
+      add_information(s.groups[g], j, group);
       for (const VectorXd& block : s.block_scores) {
-        const VectorXd score =
-            j.transpose() * block.segment(static_cast<Eigen::Index>(g) * displacements, displacements);
+        const auto of_group = block.segment(static_cast<Eigen::Index>(g) * displacements, displacements);
+        VectorXd score(n);
+        for (Eigen::Index k = 0; k < layout.group(); ++k)
+          score.segment<3>(3 * k) = j.transpose() * of_group.segment<2>(2 * k);
         group.score += score;
         group.scatter += score * score.transpose();
       }
@@ -109,7 +123,9 @@ Whole gather(const std::vector<TileSystem>& systems, const Layout& layout) {
     w.freedom += s.freedom;
     squares += s.squares;
   }
-  for (const Group& group : w.groups) {
+  for (Group& group : w.groups) {
+    group.information = MatrixXd(group.information.selfadjointView<Eigen::Lower>());
+    group.noise = MatrixXd(group.noise.selfadjointView<Eigen::Lower>());
     w.information += group.information.trace();
     w.scatter += group.scatter.trace();
   }
@@ -220,8 +236,8 @@ std::vector<ShotRegistration> describe(const VectorXd& parameters, const std::ve
     s.shift = layout.shift(parameters, k);
     double variance = model_px * model_px + spread_px * spread_px, cost2 = 0, points = 0;
     for (std::size_t t = 0; t < layout.tiles(); ++t) {
-      const MatrixXd j = layout.jacobian(t).block(2 * at, 3 * at, 2, 3);
-      variance += (j * covariance.block(3 * at, 3 * at, 3, 3) * j.transpose()).trace() / 2 / tiles;
+      const Block j = layout.jacobian(t);
+      variance += (j * covariance.block<3, 3>(3 * at, 3 * at) * j.transpose()).trace() / 2 / tiles;
       const ClothShift::Displacement d = layout.at(s.shift, t);
       const Eigen::Vector2d v(d.x, d.y);
       cost2 += std::max(0.0, v.dot(systems[t].cost[static_cast<std::size_t>(k)] * v));
@@ -235,11 +251,26 @@ std::vector<ShotRegistration> describe(const VectorXd& parameters, const std::ve
   return shots;
 }
 
+// Whether each shot lies within its error of the others.
+bool none_stands_out(VectorXd parameters, const std::vector<MatrixXd>& covariances,
+                     const std::vector<TileSystem>& systems, const Layout& layout) {
+  measure_from_median(parameters);
+  return std::ranges::all_of(
+      describe(parameters, covariances, systems, layout, 0),
+      [&](const ShotRegistration& s) { return rms_px(s.shift, layout) < kStill_sigmas * s.sigma_px; });
+}
+
+// Whether rounds that go on getting shorter as the last did settle in as many as are left.
+bool will_settle(double before_px, double last_px, int left) {
+  return last_px * std::pow(last_px / before_px, left) < kSettled_px;
+}
+
 }  // namespace
 
 Registration register_shots(std::span<const TileInput> tiles, Size frame, int threads) {
   const auto shots = static_cast<Eigen::Index>(tiles.empty() ? 0 : tiles.front().field->count());
   const Layout layout(tiles, frame, shots);
+  std::vector<TileShots> looked_at(tiles.begin(), tiles.end());
   std::vector<TileSystem> systems(tiles.size());
   VectorXd parameters = VectorXd::Zero(layout.unknowns());
   ResidualScale scale;
@@ -250,27 +281,33 @@ Registration register_shots(std::span<const TileInput> tiles, Size frame, int th
     parallel_for(tiles.size(), threads, [&](std::size_t t, int) {
       std::vector<ClothShift::Displacement> shifts;
       for (Eigen::Index k = 0; k < shots; ++k) shifts.push_back(layout.at(layout.shift(parameters, k), t));
-      systems[t] = tile_system(tiles[t], shifts, scale, static_cast<std::size_t>(layout.group()));
+      systems[t] = looked_at[t].system_at(shifts, scale, static_cast<std::size_t>(layout.group()));
     });
     const Whole whole = gather(systems, layout);
     misfit = whole.floor;
     if (round == 0) first_misfit = misfit;
     scale = {whole.floor, whole.freedom > 0 ? whole.chi2 / whole.freedom : scale.chi2};
     step = step_from(parameters, whole);
+    if (step.covariances.size() == 1) step.covariances.front() = centred(step.covariances.front());
     if (moved_px < kDone_px || round == kMostRounds) break;
     centre(step.parameters);
+    const double moved_before_px = moved_px;
     moved_px = layout.most_px(step.parameters - parameters);
     if (!(layout.most_px(step.parameters) < kMostShift_px)) {
       result.found = false;
       break;
     }
     parameters = step.parameters;
+    if (none_stands_out(parameters, step.covariances, systems, layout)) {
+      moved_px = 0;
+      break;
+    }
+    if (round >= kLeastRounds && !will_settle(moved_before_px, moved_px, kMostRounds - round)) break;
   }
-  result.found = result.found && moved_px < 10 * kDone_px && misfit <= first_misfit;
+  result.found = result.found && moved_px < kSettled_px && misfit <= first_misfit;
   measure_from_median(parameters);
   result.explained = first_misfit > 0 ? 1 - misfit / first_misfit : 0;
   const bool is_movement = result.explained > kExplainedByMovement;
-  if (step.covariances.size() == 1) step.covariances.front() = centred(step.covariances.front());
   result.shots = describe(parameters, step.covariances, systems, layout,
                           is_movement ? 0 : spread_px(parameters, layout));
   return result;

@@ -68,7 +68,9 @@ inline constexpr int kMostTogether = 32;
 /// Pereyra 1973, with the Jacobian of Kaufman 1975), readings weighted by noise and Huber's function, those
 /// in attached shadow left out. Greens are smoothed before they are compared and before gradients are taken.
 /// What noise adds to the energy of the gradients is subtracted, so that a cloth without features says so.
-/// The standard errors come from the scatter between 16 blocks of each tile and from the spread of the shots.
+/// Rounds end where no shot stands out of its error, where they settle, or where they show that they will
+/// not: then no alignment is found. The standard errors come from the scatter between 16 blocks of each tile
+/// and from the spread of the shots.
 ///
 /// Shifts are against the median of all shots, component by component: the cloth as it lay most of the time.
 /// Nothing can be told from three lights, nor from tiles under about 40 pixels.

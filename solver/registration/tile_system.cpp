@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/registration/tile_system.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -25,13 +26,6 @@ struct PointGrid {
   int count() const { return columns * rows; }
   /// Pixel of the tile.
   static int pixel(int index);
-};
-
-/// One shot of a tile, smoothed, as seen through a shift.
-struct SmoothShot {
-  std::vector<float> value, dx, dy;  ///< by point, row by row: reading, and its slope a pixel
-  double noise = 0;                  ///< variance of `value` for variance 1 of a reading
-  double slope_noise = 0;            ///< of `dx`, and of `dy`
 };
 
 constexpr double kSigma_px = 1.3;
@@ -106,6 +100,7 @@ SmoothShot smooth(View<const float> readings, bool mosaic, const CfaPattern& cfa
     slope_y.slope2 += t.slope * t.slope * s.weight2;
   }
   SmoothShot out;
+  out.shift = shift;
   const double w = total.weight;
   out.noise = total.weight2 / (w * w);
   out.slope_noise = (slope_x.slope2 + slope_y.slope2) / 2 / (w * w);
@@ -144,40 +139,50 @@ SmoothShot smooth(View<const float> readings, bool mosaic, const CfaPattern& cfa
   return out;
 }
 
+using Eigen::ArrayXd;
+using Eigen::Index;
 using Eigen::Matrix2d;
 using Eigen::Matrix3d;
+using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Eigen::VectorXd;
 
 // What no model of cloth explains better than, as a share of the albedo.
 constexpr double kModelError = 0.01;
 constexpr double kHuber = 1.5;
 constexpr int kBlocksASide = 4;
+// Slopes follow a shot so far: of a yarn of 4 px, which bends most, they miss 0.002 px.
+constexpr double kFollowed_px = 0.05;
+// Points whose products are made together.
+constexpr Index kBatch = 32;
 
-// One shot at one point: readings over strength.
-struct Row {
-  Eigen::Index shot;
-  Vector3d l;
-  double x;
-  Vector2d slope;
-  double variance, slope_variance;
-  double weight = 1;
+// One point: readings over strength of all shots, side by side. A shot that is left out has no weight.
+struct Point {
+  explicit Point(Index shots)
+      : l(3, shots), slope(2, shots), x(shots), variance(shots), slope_variance(shots), weight(shots) {}
+
+  Eigen::Matrix3Xd l;
+  Eigen::Matrix2Xd slope;
+  ArrayXd x, variance, slope_variance, weight;
+  Index used = 0;
 };
 
-Matrix3d information_of(const std::vector<Row>& rows) {
-  Matrix3d m = Matrix3d::Zero();
-  for (const Row& r : rows) m += r.weight * r.l * r.l.transpose();
-  return m;
-}
-
-// Leaves out readings in attached shadow.
-void drop_shadowed(std::vector<Row>& rows, std::size_t lights) {
-  std::vector<double> x;
-  for (const Row& r : rows) x.push_back(r.x);
-  const std::size_t rank = std::min(static_cast<std::size_t>(bright_rank(lights)), x.size());
+// Leaves out readings in attached shadow; `sorted` is room for them.
+void drop_shadowed(Point& p, std::vector<double>& sorted) {
+  sorted.clear();
+  for (Index k = 0; k < p.x.size(); ++k) {
+    if (p.weight[k] > 0) sorted.push_back(p.x[k]);
+  }
+  const auto all = static_cast<std::size_t>(p.x.size());
+  const std::size_t rank = std::min(static_cast<std::size_t>(bright_rank(all)), sorted.size());
   if (rank == 0) return;
-  const double least = kShadowShare * value_of_rank<double>(x, x.size() - rank);
-  std::erase_if(rows, [&](const Row& r) { return r.x < least; });
+  const double least = kShadowShare * value_of_rank<double>(sorted, sorted.size() - rank);
+  for (Index k = 0; k < p.x.size(); ++k) {
+    if (!(p.weight[k] > 0) || !(p.x[k] < least)) continue;
+    p.weight[k] = 0;
+    --p.used;
+  }
 }
 
 // Weighted least squares, weights by noise and Huber's function, until they settle.
@@ -186,115 +191,181 @@ struct Fit {
   Vector3d b = Vector3d::Zero();
   bool solved = false;
 };
-Fit fit(std::vector<Row>& rows, const ResidualScale& scale) {
+Fit fit(Point& p, const ResidualScale& scale) {
   Fit f;
   for (int pass = 0; pass < 3; ++pass) {
-    const Matrix3d m = information_of(rows);
+    Matrix3d m = Matrix3d::Zero();
+    Vector3d sum = Vector3d::Zero();
+    for (Index k = 0; k < p.x.size(); ++k) {
+      const Vector3d wl = p.weight[k] * p.l.col(k);
+      m += wl * p.l.col(k).transpose();
+      sum += p.x[k] * wl;
+    }
     bool regular = false;
     m.computeInverseWithCheck(f.inverse, regular);
     if (!regular) return {};
-    Vector3d sum = Vector3d::Zero();
-    for (const Row& r : rows) sum += r.weight * r.x * r.l;
     f.b = f.inverse * sum;
     if (pass == 2) break;
     const double model2 = kModelError * kModelError * f.b.squaredNorm();
-    for (Row& r : rows) {
-      const double variance = r.variance + model2;
-      const double share =
-          scale.chi2 > 0 ? std::abs(r.x - r.l.dot(f.b)) / (kHuber * std::sqrt(variance * scale.chi2)) : 0;
-      r.weight = 1 / (variance * std::max(1.0, share));
+    for (Index k = 0; k < p.x.size(); ++k) {
+      if (!(p.weight[k] > 0)) continue;
+      const double variance = p.variance[k] + model2;
+      const double share = scale.chi2 > 0 ? std::abs(p.x[k] - p.l.col(k).dot(f.b)) /
+                                                (kHuber * std::sqrt(variance * scale.chi2))
+                                          : 0;
+      p.weight[k] = 1 / (variance * std::max(1.0, share));
     }
   }
   f.solved = f.b.allFinite() && f.b.squaredNorm() > 0;
   return f;
 }
 
-void add_point(const std::vector<Row>& rows, const Fit& f, Eigen::Index group, TileSystem& s,
-               Eigen::VectorXd& score) {
-  const double rho = f.b.norm();
-  const Vector3d n = f.b / rho;
-  Eigen::Matrix<double, 3, 2> slope = Eigen::Matrix<double, 3, 2>::Zero();
-  Matrix3d slope_noise = Matrix3d::Zero();
-  for (const Row& r : rows) {
-    slope += r.weight * r.l * r.slope.transpose();
-    slope_noise += r.weight * r.weight * r.slope_variance * r.l * r.l.transpose();
-  }
-  slope = f.inverse * slope;
-  slope_noise = f.inverse * slope_noise * f.inverse;
+// Sums the equations of points. The part of a pair of shots is of rank 3 in their displacements, and that of
+// their noise of rank 9 in the shots: both are products of factors of many points.
+class PointSums {
+ public:
+  PointSums(Index shots, Index group, TileSystem& s)
+      : group_(group), s_(s), shared_(2 * shots, 3 * kBatch), noise_(shots, 9 * kBatch) {}
 
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Row& a = rows[i];
-    const Vector2d ga = slope.transpose() * a.l;
-    const Vector3d la = f.inverse * a.l, na = slope_noise * a.l;
-    const double residual = a.x - a.l.dot(f.b);
-    score.segment<2>(2 * a.shot) -= a.weight * residual * ga;
-    const double variance = a.variance + kModelError * kModelError * rho * rho;
-    s.chi2 += std::min(a.weight * residual * residual, residual * residual / variance);
-    s.squares += a.weight * variance * residual * residual;
-    const Eigen::Index first = a.shot / group * group;
-    GroupInformation& known = s.groups[static_cast<std::size_t>(a.shot / group)];
-    for (std::size_t j = i + 1; j-- > 0 && rows[j].shot >= first;) {
-      const Row& c = rows[j];
-      const double w = (i == j ? a.weight : 0) - a.weight * c.weight * la.dot(c.l);
-      const Eigen::Index at = 2 * (a.shot - first), with = 2 * (c.shot - first);
-      known.information.block<2, 2>(at, with) += w * ga * (slope.transpose() * c.l).transpose();
-      known.noise.block<2, 2>(at, with) += w * na.dot(c.l) * Matrix2d::Identity();
+  void add(const Point& p, const Fit& f, VectorXd& score) {
+    const double rho = f.b.norm();
+    const Vector3d n = f.b / rho;
+    Eigen::Matrix<double, 3, 2> slope = Eigen::Matrix<double, 3, 2>::Zero();
+    Matrix3d slope_noise = Matrix3d::Zero();
+    for (Index k = 0; k < p.x.size(); ++k) {
+      const Vector3d wl = p.weight[k] * p.l.col(k);
+      slope += wl * p.slope.col(k).transpose();
+      slope_noise += p.slope_variance[k] * wl * wl.transpose();
     }
-    const Vector3d turn = a.weight / rho * (la - n.dot(la) * n);
-    s.cost[static_cast<std::size_t>(a.shot)] +=
-        turn.squaredNorm() * (ga * ga.transpose() - na.dot(a.l) * Matrix2d::Identity());
+    slope = f.inverse * slope;
+    slope_noise = f.inverse * slope_noise * f.inverse;
+    const Matrix3d root = f.inverse.llt().matrixL(), noise_root = root_of(slope_noise);
+
+    for (Index k = 0; k < p.x.size(); ++k) {
+      const double w = p.weight[k];
+      const Vector3d l = p.l.col(k), u = w * (root.transpose() * l), d = noise_root.transpose() * l;
+      const Vector2d g = slope.transpose() * l;
+      for (Index i = 0; i < 3; ++i) {
+        shared_.block<2, 1>(2 * k, 3 * batch_ + i) = u[i] * g;
+        for (Index j = 0; j < 3; ++j) noise_(k, 9 * batch_ + 3 * i + j) = u[i] * d[j];
+      }
+      if (!(w > 0)) continue;
+      const double residual = p.x[k] - l.dot(f.b), noise = d.squaredNorm();
+      const double variance = p.variance[k] + kModelError * kModelError * rho * rho;
+      const Matrix2d gg = g * g.transpose();
+      score.segment<2>(2 * k) -= w * residual * g;
+      s_.chi2 += std::min(w * residual * residual, residual * residual / variance);
+      s_.squares += w * variance * residual * residual;
+      GroupInformation& known = s_.groups[static_cast<std::size_t>(k / group_)];
+      const Index at = k % group_;
+      known.information.block<2, 2>(2 * at, 2 * at) += w * gg;
+      known.noise(at, at) += w * noise;
+      const Vector3d la = f.inverse * l, turn = w / rho * (la - n.dot(la) * n);
+      s_.cost[static_cast<std::size_t>(k)] += turn.squaredNorm() * (gg - noise * Matrix2d::Identity());
+    }
+    s_.points += 1;
+    s_.freedom += static_cast<double>(p.used) - 3;
+    if (++batch_ == kBatch) flush();
   }
-  s.points += 1;
-  s.freedom += static_cast<double>(rows.size()) - 3;
-}
+
+  void flush() {
+    for (std::size_t g = 0; g < s_.groups.size() && batch_ > 0; ++g) {
+      const Index first = static_cast<Index>(g) * group_;
+      s_.groups[g].information.selfadjointView<Eigen::Lower>().rankUpdate(
+          shared_.block(2 * first, 0, 2 * group_, 3 * batch_), -1);
+      s_.groups[g].noise.selfadjointView<Eigen::Lower>().rankUpdate(
+          noise_.block(first, 0, group_, 9 * batch_), -1);
+    }
+    batch_ = 0;
+  }
+
+ private:
+  // R R^T of a matrix that has no negative direction, but may have one of zero.
+  static Matrix3d root_of(const Matrix3d& m) {
+    const double little = 1e-12 * m.trace() + 1e-300;
+    return (m + little * Matrix3d::Identity()).llt().matrixL();
+  }
+
+  Index group_;
+  TileSystem& s_;
+  MatrixXd shared_, noise_;  // columns of the batch
+  Index batch_ = 0;
+};
 
 }  // namespace
 
-TileSystem tile_system(const TileInput& tile, std::span<const ClothShift::Displacement> shifts,
-                       const ResidualScale& scale, std::size_t group) {
-  const std::size_t shots = shifts.size();
-  const auto n = static_cast<Eigen::Index>(2 * shots), of_group = static_cast<Eigen::Index>(2 * group);
-  const auto planes = static_cast<std::size_t>(tile.planes);
-  TileSystem s = {
-      {shots / group, {Eigen::MatrixXd::Zero(of_group, of_group), Eigen::MatrixXd::Zero(of_group, of_group)}},
-      std::vector<Eigen::VectorXd>(kBlocksASide * kBlocksASide, Eigen::VectorXd::Zero(n)),
-      std::vector<Matrix2d>(shots, Matrix2d::Zero())};
-  const PointGrid grid({tile.tile.width(), tile.tile.height()});
-  std::vector<SmoothShot> smoothed;
-  for (std::size_t k = 0; k < shots && grid.count() > 0; ++k) {
-    smoothed.push_back(
-        smooth(tile.readings[k * planes + (planes == 3)], planes == 1, tile.cfa, shifts[k], grid));
+void TileShots::read_lights(std::size_t shots) {
+  const PointGrid grid({tile_.tile.width(), tile_.tile.height()});
+  for (int i = 0; i < grid.count(); ++i) {
+    const int x = tile_.tile.x0 + PointGrid::pixel(i % grid.columns),
+              y = tile_.tile.y0 + PointGrid::pixel(i / grid.columns);
+    for (std::size_t k = 0; k < shots; ++k) {
+      const LightField::Light light = tile_.field->at(k, 1, x, y);
+      const double over = light.strength > 0 ? 1 / light.strength : 0;
+      lights_.push_back({static_cast<float>(light.direction.x), static_cast<float>(light.direction.y),
+                         static_cast<float>(light.direction.z), static_cast<float>(over)});
+    }
   }
-  std::vector<Row> rows;
+}
+
+TileSystem TileShots::system_at(std::span<const ClothShift::Displacement> shifts, const ResidualScale& scale,
+                                std::size_t group) {
+  const std::size_t shots = shifts.size();
+  const auto n = static_cast<Index>(shots), of_group = static_cast<Index>(group);
+  const auto planes = static_cast<std::size_t>(tile_.planes);
+  TileSystem s = {
+      {shots / group, {MatrixXd::Zero(2 * of_group, 2 * of_group), MatrixXd::Zero(of_group, of_group)}},
+      std::vector<VectorXd>(kBlocksASide * kBlocksASide, VectorXd::Zero(2 * n)),
+      std::vector<Matrix2d>(shots, Matrix2d::Zero())};
+  const PointGrid grid({tile_.tile.width(), tile_.tile.height()});
+  if (grid.count() == 0) return s;
+  if (lights_.empty()) read_lights(shots);
+  std::vector<ClothShift::Displacement> beyond(shots);  // what the slopes follow
+  smoothed_.resize(shots);
+  for (std::size_t k = 0; k < shots; ++k) {
+    SmoothShot& shot = smoothed_[k];
+    beyond[k] = {shifts[k].x - shot.shift.x, shifts[k].y - shot.shift.y};
+    if (!shot.value.empty() && std::hypot(beyond[k].x, beyond[k].y) <= kFollowed_px) continue;
+    shot = smooth(tile_.readings[k * planes + (planes == 3)], planes == 1, tile_.cfa, shifts[k], grid);
+    beyond[k] = {};
+  }
+  Point p(n);
+  PointSums sums(n, of_group, s);
+  std::vector<double> sorted;
   for (int i = 0; i < grid.count(); ++i) {
     const int column = i % grid.columns, row = i / grid.columns;
-    const int x = tile.tile.x0 + PointGrid::pixel(column), y = tile.tile.y0 + PointGrid::pixel(row);
     const auto at = static_cast<std::size_t>(i);
-    rows.clear();
-    for (std::size_t k = 0; k < shots; ++k) {
-      const SmoothShot& shot = smoothed[k];
-      if (!std::isfinite(shot.value[at] + shot.dx[at] + shot.dy[at])) continue;
-      const LightField::Light light = tile.field->at(k, 1, x, y);
-      if (!(light.strength > 0)) continue;
-      const double over = 1 / light.strength;
-      const double variance = tile.noise
-                                  ? (tile.noise->variance(shot.value[at]) + tile.noise->shared) * over * over
+    p.used = 0;
+    for (Index k = 0; k < n; ++k) {
+      const auto of = static_cast<std::size_t>(k);
+      const SmoothShot& shot = smoothed_[of];
+      const Light& light = lights_[at * shots + of];
+      const double value = shot.value[at] + beyond[of].x * shot.dx[at] + beyond[of].y * shot.dy[at];
+      const double over = light.over;
+      const bool is_usable = std::isfinite(shot.value[at] + shot.dx[at] + shot.dy[at]) && over > 0;
+      p.weight[k] = is_usable ? 1 : 0;
+      p.l.col(k) = Vector3d(light.x, light.y, light.z);
+      p.x[k] = is_usable ? value * over : 0;
+      p.slope.col(k) = is_usable ? Vector2d(Vector2d(shot.dx[at], shot.dy[at]) * over) : Vector2d(0, 0);
+      const double variance = !is_usable ? 0
+                              : tile_.noise
+                                  ? (tile_.noise->variance(value) + tile_.noise->shared) * over * over
                                   : scale.floor / shot.noise;
-      rows.push_back({static_cast<Eigen::Index>(k),
-                      Vector3d(light.direction.x, light.direction.y, light.direction.z),
-                      shot.value[at] * over, Vector2d(shot.dx[at], shot.dy[at]) * over, variance * shot.noise,
-                      variance * shot.slope_noise});
+      p.variance[k] = variance * shot.noise;
+      p.slope_variance[k] = variance * shot.slope_noise;
+      p.used += is_usable ? 1 : 0;
     }
-    const std::size_t usable = rows.size();
-    drop_shadowed(rows, shots);
+    const Index usable = p.used;
+    drop_shadowed(p, sorted);
     s.readings += static_cast<double>(usable);
-    s.shadowed += static_cast<double>(usable - rows.size());
-    if (rows.size() < 4) continue;
-    const Fit f = fit(rows, scale);
+    s.shadowed += static_cast<double>(usable - p.used);
+    if (p.used < 4) continue;
+    const Fit f = fit(p, scale);
     if (!f.solved) continue;
     const int block = row * kBlocksASide / grid.rows * kBlocksASide + column * kBlocksASide / grid.columns;
-    add_point(rows, f, static_cast<Eigen::Index>(group), s, s.block_scores[static_cast<std::size_t>(block)]);
+    sums.add(p, f, s.block_scores[static_cast<std::size_t>(block)]);
   }
+  sums.flush();
   return s;
 }
 
