@@ -160,8 +160,56 @@ class LanesFit {
     store(across_of_lobe, variances.across_of_lobe);
   }
 
+  void add_shared(std::span<const NudgedLobe> nudged, std::size_t pixels, SharedEquations& sums) const {
+    const M across = hn::Gt(hn::LoadU(d_, block_.across.data() + at_), hn::Zero(d_));
+    const Vector3 b = load(block_.start);
+    const Point point = point_at(b, yarn_of(across));
+    const Place place = place_of(b, yarn_of(across));
+    const V zero = hn::Zero(d_);
+    // Slopes of one light after another by each value, then what they come to.
+    Shared slopes[kLobeParameters];
+    for (std::size_t p = 0; p < nudged.size(); ++p)
+      slopes[p] = {zero, zero_vector(d_), {zero, zero, zero, zero, zero}};
+    for (const LobeBlock::Light& light : block_.lights()) {
+      const Linear r = linear(light, place);
+      V slope[kLobeParameters];
+      for (std::size_t p = 0; p < nudged.size(); ++p) {
+        const LanesFit other(d_, nudged[p].lobe, block_, at_);
+        const V there = other.linear(light, other.place_of(b, other.yarn_of(across))).model;
+        slope[p] = hn::Mul(hn::Sub(there, r.model), number(d_, 1 / nudged[p].by));
+        const V weighted = hn::Mul(r.weight, slope[p]);
+        slopes[p].gradient = hn::MulAdd(weighted, r.residual, slopes[p].gradient);
+        add_scaled(slopes[p].mixed, weighted, r.by_b);
+        for (std::size_t q = 0; q <= p; ++q)
+          slopes[p].with[q] = hn::MulAdd(weighted, slope[q], slopes[p].with[q]);
+      }
+    }
+    const Factor f = factor_of(d_, point.matrix);
+    const M is_pixel = hn::FirstN(d_, pixels - at_);
+    const auto sum = [&](V v) {
+      return double{hn::GetLane(hn::SumOfLanes(d_, hn::IfThenElseZero(is_pixel, v)))};
+    };
+    for (std::size_t p = 0; p < nudged.size(); ++p) {
+      const Vector3 solved = solved_by(f, slopes[p].mixed);
+      const std::size_t row = nudged[p].parameter;
+      sums.gradient[row] += sum(hn::Sub(slopes[p].gradient, dot(solved, point.gradient)));
+      for (std::size_t q = 0; q <= p; ++q) {
+        const double both = sum(hn::Sub(slopes[p].with[q], dot(solved, slopes[q].mixed)));
+        const std::size_t column = nudged[q].parameter;
+        sums.matrix[row][column] += both;
+        if (q < p) sums.matrix[column][row] += both;
+      }
+    }
+  }
+
  private:
   using Lanes = LobeLanes<kFamily>;
+  // What the readings of a vector of pixels say of one shared value.
+  struct Shared {
+    V gradient;
+    Vector3 mixed;            // with b
+    V with[kLobeParameters];  // with the values up to it
+  };
   // b, with what its readings share.
   struct Place {
     Vector3 b;
@@ -412,6 +460,15 @@ void write_variances_lanes(const Lobe& lobe, std::span<const Lobe> one_sigma_off
   });
 }
 
+void add_shared_lanes(const Lobe& lobe, std::span<const NudgedLobe> nudged, const LobeBlock& block,
+                      std::size_t pixels, SharedEquations& sums) {
+  const D d;
+  for_family(lobe.family, [&]<LobeFamily kFamily>() {
+    for (std::size_t at = 0; at < pixels; at += hn::Lanes(d))
+      LanesFit<kFamily>(d, lobe, block, at).add_shared(nudged, pixels, sums);
+  });
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace weft::solver
 HWY_AFTER_NAMESPACE();
@@ -422,6 +479,7 @@ namespace weft::solver {
 HWY_EXPORT(fit_block_lanes);
 HWY_EXPORT(improve_block_lanes);
 HWY_EXPORT(write_variances_lanes);
+HWY_EXPORT(add_shared_lanes);
 
 void fit_block(const Lobe& lobe, LobeBlock& block, int steps) {
   HWY_DYNAMIC_DISPATCH(fit_block_lanes)(lobe, block, steps);
@@ -434,6 +492,11 @@ void improve_block(const Lobe& lobe, std::size_t index, LobeBlock& block, std::s
 void write_variances(const Lobe& lobe, std::span<const Lobe> one_sigma_off, const LobeBlock& block,
                      std::size_t pixels, BlockVariances& variances) {
   HWY_DYNAMIC_DISPATCH(write_variances_lanes)(lobe, one_sigma_off, block, pixels, variances);
+}
+
+void add_shared(const Lobe& lobe, std::span<const NudgedLobe> nudged, const LobeBlock& block,
+                std::size_t pixels, SharedEquations& sums) {
+  HWY_DYNAMIC_DISPATCH(add_shared_lanes)(lobe, nudged, block, pixels, sums);
 }
 
 namespace {

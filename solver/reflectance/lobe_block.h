@@ -73,6 +73,27 @@ void fit_block(const Lobe& lobe, LobeBlock& block, int steps);
 /// of several lobes. A fit that cannot come below what is solved any more is given up.
 void improve_block(const Lobe& lobe, std::size_t index, LobeBlock& block, std::size_t pixels);
 
+/// Values of a lobe that many pixels may share.
+inline constexpr std::size_t kLobeParameters = 5;
+
+/// A lobe with one of its values, number `parameter`, larger by `by`: what slopes are taken from.
+struct NudgedLobe {
+  Lobe lobe;
+  double by = 0;
+  std::size_t parameter = 0;
+};
+
+/// Normal equations of the shared values, b of every pixel eliminated: matrix * change = gradient.
+struct SharedEquations {
+  std::array<std::array<double, kLobeParameters>, kLobeParameters> matrix = {};
+  std::array<double, kLobeParameters> gradient = {};
+};
+/// Adds what the first `pixels` of a block say at their `start`, with their yarns as `across` says: M = S^T W
+/// S - (S^T W J)(J^T W J)^-1 (J^T W S) with the slopes S by the values that are nudged and Huber's weights W,
+/// and likewise the gradient. In float32 but for the sums over pixels.
+void add_shared(const Lobe& lobe, std::span<const NudgedLobe> nudged, const LobeBlock& block,
+                std::size_t pixels, SharedEquations& sums);
+
 /// Variances of b along its normal, which is that of the albedo, and across it, which is that of both
 /// directions together.
 struct BlockVariances {

@@ -16,8 +16,6 @@ namespace {
 using Shared = Eigen::Matrix<double, kLobeParameters, 1>;
 using SharedMatrix = Eigen::Matrix<double, kLobeParameters, kLobeParameters>;
 
-// Pixels whose sums are made by one thread, in their order.
-constexpr std::size_t kChunk = 64;
 // Dampings of one step, each eight times the one before; where the last wins nothing the fit is over.
 constexpr int kMostTries = 7;
 // What pixels need to follow a lobe that moved a little.
@@ -51,61 +49,25 @@ Lobe lobe_of(const Lobe& like, const Shared& v) {
 // The largest change of a round.
 constexpr std::array<double, kLobeParameters> kMostChange = {0.5, 0.1, 0.5, 0.35, 0.5};
 
-// What one chunk of pixels says of the shared values.
+// The equations of the fitted values; zero elsewhere.
 struct Reduced {
-  SharedMatrix matrix = SharedMatrix::Zero();
-  Shared gradient = Shared::Zero();
+  SharedMatrix matrix;
+  Shared gradient;
 };
 
-// Adds a pixel: M = S^T W S - (S^T W J)(J^T W J)^-1 (J^T W S), and likewise the gradient.
-void add_pixel(const LobeSamples& samples, const LobeFit& fit, const NudgedLobes& there,
-               const LobeParameters& fitted, std::size_t pixel, Reduced& sums) {
-  const Vec3 b = fit.b[pixel];
-  const double yarn = fit.yarn[pixel];
-  PixelSystem system;
-  std::array<Vec3, kLobeParameters> mixed = {};
-  for (const LobeReading& r : samples.of(pixel)) {
-    if (r.weight == 0) continue;
-    const ModelledReading m = modelled_with_derivative(fit.lobe, b, r.from, yarn);
-    const double residual = r.x - m.x;
-    const double w = r.weight * huber_weight(residual * std::sqrt(r.weight));
-    system.add(m.by_b, w, residual);
-    Shared s = Shared::Zero();
-    for (std::size_t p = 0; p < kLobeParameters; ++p) {
-      if (!fitted[p]) continue;
-      const double slope = (modelled(there[p].lobe, b, r.from, yarn) - m.x) / there[p].by;
-      s[static_cast<Eigen::Index>(p)] = slope;
-      mixed[p] = mixed[p] + (w * slope) * m.by_b;
-    }
-    sums.matrix += w * s * s.transpose();
-    sums.gradient += w * residual * s;
-  }
-  system.regularise();
-  for (std::size_t p = 0; p < kLobeParameters; ++p) {
-    if (!fitted[p]) continue;
-    const Vec3 solved = system.solved(mixed[p]);
-    sums.gradient[static_cast<Eigen::Index>(p)] -= dot(solved, system.gradient);
-    for (std::size_t q = 0; q < kLobeParameters; ++q) {
-      if (fitted[q])
-        sums.matrix(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q)) -= dot(solved, mixed[q]);
-    }
-  }
-}
-
 Reduced reduced(const LobeSamples& samples, const LobeFit& fit, const LobeParameters& fitted, int threads) {
-  const std::size_t pixels = samples.pixels();
-  const NudgedLobes there = nudged(fit.lobe, fitted);
-  std::vector<Reduced> parts((pixels + kChunk - 1) / kChunk);
-  parallel_for(parts.size(), threads, [&](std::size_t chunk, int) {
-    for (std::size_t i = chunk * kChunk; i < std::min(pixels, (chunk + 1) * kChunk); ++i)
-      add_pixel(samples, fit, there, fitted, i, parts[chunk]);
-  });
-  Reduced all;
-  for (const Reduced& part : parts) {
-    all.matrix += part.matrix;
-    all.gradient += part.gradient;
+  std::vector<NudgedLobe> there;
+  for (std::size_t p = 0; p < kLobeParameters; ++p) {
+    if (fitted[p]) there.push_back(nudged(fit.lobe, static_cast<LobeParameter>(p)));
   }
-  return all;
+  const SharedEquations all = samples.shared(fit.lobe, there, fit.yarn, fit.b, threads);
+  Reduced sums;
+  for (std::size_t p = 0; p < kLobeParameters; ++p) {
+    sums.gradient[static_cast<Eigen::Index>(p)] = all.gradient[p];
+    for (std::size_t q = 0; q < kLobeParameters; ++q)
+      sums.matrix(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q)) = all.matrix[p][q];
+  }
+  return sums;
 }
 
 class SharedFit {
@@ -186,21 +148,46 @@ std::size_t LobeSamples::used() const {
       std::ranges::count_if(readings_, [](const LobeReading& r) { return r.weight > 0; }));
 }
 
+LobeBlock LobeSamples::block_at(std::size_t index, std::span<const double> yarn,
+                                std::span<const Vec3> b) const {
+  LobeBlock block = blocks_[index];
+  for (std::size_t i = 0, pixel = index * LobeBlock::kPixels; i < LobeBlock::kPixels && pixel < pixels();
+       ++i, ++pixel) {
+    block.begin_at(i, b[pixel]);
+    block.across[i] = yarn[pixel] > 0 ? 1 : 0;
+  }
+  return block;
+}
+
 void LobeSamples::fit_pixels(const Lobe& lobe, std::span<const double> yarn, int steps, int threads,
                              std::span<Vec3> b, std::span<double> cost) const {
   parallel_for(blocks_.size(), threads, [&](std::size_t i, int) {
-    LobeBlock block = blocks_[i];
+    LobeBlock block = block_at(i, yarn, b);
     const std::size_t first = i * LobeBlock::kPixels, end = std::min(pixels(), first + LobeBlock::kPixels);
-    for (std::size_t pixel = first; pixel < end; ++pixel) {
-      block.begin_at(pixel - first, b[pixel]);
-      block.across[pixel - first] = yarn[pixel] > 0 ? 1 : 0;
-    }
     fit_block(lobe, block, steps);
     for (std::size_t pixel = first; pixel < end; ++pixel) {
       b[pixel] = block.b(pixel - first);
       cost[pixel] = block.cost[pixel - first];
     }
   });
+}
+
+SharedEquations LobeSamples::shared(const Lobe& lobe, std::span<const NudgedLobe> nudged,
+                                    std::span<const double> yarn, std::span<const Vec3> b,
+                                    int threads) const {
+  std::vector<SharedEquations> parts(blocks_.size());
+  parallel_for(blocks_.size(), threads, [&](std::size_t i, int) {
+    add_shared(lobe, nudged, block_at(i, yarn, b),
+               std::min(LobeBlock::kPixels, pixels() - i * LobeBlock::kPixels), parts[i]);
+  });
+  SharedEquations all;
+  for (const SharedEquations& part : parts) {
+    for (std::size_t p = 0; p < kLobeParameters; ++p) {
+      all.gradient[p] += part.gradient[p];
+      for (std::size_t q = 0; q < kLobeParameters; ++q) all.matrix[p][q] += part.matrix[p][q];
+    }
+  }
+  return all;
 }
 
 LobeParameters parameters_of(LobeFamily family) {
@@ -221,10 +208,11 @@ LobeParameters parameters_of(const Lobe& lobe, bool bends) {
 }
 
 NudgedLobe nudged(const Lobe& lobe, LobeParameter parameter) {
-  const double by = parameter == LobeParameter::kF0 ? 1e-4 : 1e-3;
+  // Readings are linear in f0, and its range ends at 0.6.
+  const double by = parameter != LobeParameter::kF0 ? 1e-3 : lobe.f0 < 0.3 ? 1e-2 : -1e-2;
   Shared there = values_of(lobe);
   there[static_cast<Eigen::Index>(parameter)] += by;
-  return {lobe_of(lobe, there), by};
+  return {lobe_of(lobe, there), by, static_cast<std::size_t>(parameter)};
 }
 
 NudgedLobes nudged(const Lobe& lobe, const LobeParameters& fitted) {

@@ -37,8 +37,13 @@ class LobeSamples {
   /// Every pixel's b and cost for a lobe, from where they are (fit_block). `yarn` is by pixel.
   void fit_pixels(const Lobe& lobe, std::span<const double> yarn, int steps, int threads, std::span<Vec3> b,
                   std::span<double> cost) const;
+  /// What all pixels say of the values that are nudged (add_shared), each at its b.
+  SharedEquations shared(const Lobe& lobe, std::span<const NudgedLobe> nudged, std::span<const double> yarn,
+                         std::span<const Vec3> b, int threads) const;
 
  private:
+  LobeBlock block_at(std::size_t index, std::span<const double> yarn, std::span<const Vec3> b) const;
+
   std::size_t lights_, each_;  // each_: readings of a pixel
   AlbedoScale scale_;
   std::vector<LobeReading> readings_;  // [pixel * each_ + state * lights_ + light]
@@ -56,7 +61,6 @@ enum class LobeParameter {
   kLogBroad = kLogAlong,
   kBroadShare = kAxis
 };
-inline constexpr std::size_t kLobeParameters = 5;
 using LobeParameters = std::array<bool, kLobeParameters>;  ///< which are fitted
 using LobeCovariance = std::array<std::array<double, kLobeParameters>, kLobeParameters>;
 
@@ -66,11 +70,6 @@ LobeParameters parameters_of(LobeFamily family);
 /// Those of a lobe's family, and its bend where the diffuse part `bends`.
 LobeParameters parameters_of(const Lobe& lobe, bool bends);
 
-/// A lobe with one of its values a little larger, and by how much: what slopes are taken from.
-struct NudgedLobe {
-  Lobe lobe;
-  double by = 0;
-};
 NudgedLobe nudged(const Lobe& lobe, LobeParameter parameter);
 /// By each of the fitted parameters; the others are not filled in.
 using NudgedLobes = std::array<NudgedLobe, kLobeParameters>;

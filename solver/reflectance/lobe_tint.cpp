@@ -145,8 +145,8 @@ class TintEquations {
     s.weight = r.weight * huber_weight((r.x - m.x) * std::sqrt(r.weight));
     s.by_b = m.by_b;
     const auto slope_by = [&](LobeParameter p) {
-      const auto& [nudged_lobe, by] = there[static_cast<std::size_t>(p)];
-      return (modelled(nudged_lobe, b, r.from, yarn) - m.x) / by;
+      const NudgedLobe& off = there[static_cast<std::size_t>(p)];
+      return (modelled(off.lobe, b, r.from, yarn) - m.x) / off.by;
     };
     for (std::size_t p = 0; p < kForm.size(); ++p) {
       if (form_[static_cast<std::size_t>(kForm[p])])
