@@ -22,8 +22,8 @@ namespace {
 
 // One reading more than a normal and an albedo have unknowns.
 constexpr float kLeastReadings = 4;
-// Where a pixel begins again: where it is, then other_starts.
-constexpr std::size_t kStages = 1 + kOtherStarts;
+// Where a pixel begins again: at the first of other_starts, where it is, and at the others.
+constexpr std::size_t kStages = 1 + kOtherStarts, kWhereItIs = 1;
 
 double root_of_sum(double a, double b) {
   return std::sqrt(std::max(a + b, 0.0));
@@ -147,12 +147,13 @@ class GlossyTile {
   void begin_again(std::size_t stage) {
     Group& group = *again_[stage];
     for (std::size_t i = 0; i < group.count; ++i) {
-      if (stage == 0) {
+      if (stage == kWhereItIs) {
         group.block.begin_at(i, group.block.b(i));
         continue;
       }
       for (std::size_t k = 0; k < readings_.size(); ++k) readings_[k] = group.block.reading(i, k);
-      group.block.begin_at(i, other_starts(readings_, group.pixels[i].albedo)[stage - 1]);
+      const std::size_t start = stage < kWhereItIs ? stage : stage - 1;
+      group.block.begin_at(i, other_starts(readings_, group.pixels[i].albedo)[start]);
     }
     improve(group);
     finish(group, stage + 1);

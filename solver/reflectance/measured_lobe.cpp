@@ -403,13 +403,14 @@ std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> reading
   }
   if (!std::isfinite(least)) least = median_albedo;
   const double albedo = std::min(least, median_albedo);
-  std::array<Vec3, kOtherStarts> starts = {Vec3{0, 0, least}, Vec3{0, 0, median_albedo}};
-  starts[2] = starts[3] = starts[4] = starts[0];
+  const Vec3 level = {0, 0, least};
+  std::array<Vec3, kOtherStarts> starts = {level, {0, 0, median_albedo}, level, level, level};
+  constexpr std::array<std::size_t, brightest.size()> kMirrored = {0, 3, 4};
   // The more of the brightest lights, the more they have in common with the pixel's own mirror.
   Vec3 mirror = {0, 0, 0};
   for (std::size_t i = 0; i < brightest.size() && brightest[i] != nullptr; ++i) {
     mirror = mirror + (brightest[i]->x - least * brightest[i]->from.light.z) * brightest[i]->from.half;
-    if (length(mirror) > 0) starts[2 + i] = albedo * normalized(mirror);
+    if (length(mirror) > 0) starts[kMirrored[i]] = albedo * normalized(mirror);
   }
   return starts;
 }

@@ -116,8 +116,9 @@ std::optional<MeasuredLobe> measure_two_lobes(const LobeSamples& samples, const 
 /// Sigmas with those that errors of the lights make, whose covariance is in the order of LobeByLights.
 void add_light_errors(std::span<const double> covariance, MeasuredLobe& measured);
 
-/// Where else a pixel may begin: level with its darkest reading and with the median albedo, and facing where
-/// its brightest, its two and its three brightest lights are mirrored.
+/// Where else a pixel may begin, most promising first: facing where its brightest light is mirrored, level
+/// with the median albedo and with its darkest reading, and facing where its two and its three brightest
+/// lights are mirrored.
 inline constexpr std::size_t kOtherStarts = 5;
 std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> readings, double median_albedo);
 
