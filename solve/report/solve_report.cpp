@@ -411,7 +411,8 @@ Verdict unexplained(const PhotographsSummary& photographs, std::optional<solver:
 }  // namespace
 
 bool may_have_moved_far(const PhotographsSummary& photographs) {
-  return !photographs.shifts.found && misfit_of(photographs) > kLeastMisfit;
+  const bool is_explained = photographs.glossy_share > kMostlyGlossy;
+  return !photographs.shifts.found && !is_explained && misfit_of(photographs) > kLeastMisfit;
 }
 
 std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular,

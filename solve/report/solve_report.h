@@ -111,7 +111,7 @@ inline constexpr double kMostlyGlossy = 0.5;
 /// From here on shifts are looked for that are too large to be registered: of one shot of ten that moved the
 /// median hardly tells.
 inline constexpr double kLeastMisfit = 0.01;
-/// Whether they are. What named faults explain does not count.
+/// Whether they are. What named faults explain does not count, nor what a lobe does.
 bool may_have_moved_far(const PhotographsSummary& photographs);
 /// What is left alone and costs more is warned of.
 inline constexpr double kLeastWarnedShift_deg = 0.2;

@@ -349,13 +349,13 @@ class Run {
     summary.left_out = left_out(plan_.session);
     for (const Shot& shot : plan_.lit) summary.shot_of_led[shot.led] = shot.index;
     summary.shifts = prepared.shifts;
+    if (frame.gloss) summary.glossy_share = frame.gloss->share;
     // Where shots could not be registered and readings do not fit, the cloth may have moved by far.
     if (may_have_moved_far(summary)) {
       Result<MovedShots> far = find_far_shifts(prepared.photographs, context_);
       if (!far) return std::move(far).error();
       summary.far_shifts = std::move(*far);
     }
-    if (frame.gloss) summary.glossy_share = frame.gloss->share;
     summary.shadow_reach_is_capped = frame.reference && frame.reference->shadow_reach_is_capped;
     if (frame.left_out) facts_.check = facts_of(*frame.left_out, summary.numbers);
     return {};
