@@ -10,11 +10,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/base/measured_rig.h"
@@ -26,20 +28,26 @@
 #include "core/rig/session.h"
 #include "simulator/simulate.h"
 #include "solve/bands/bands.h"
+#include "solve/levels/frame.h"
 #include "solve/photographs/photographs.h"
 #include "solver/kernels/linear.h"
 #include "solver/method.h"
 #include "solver/normals/seed.h"
+#include "solver/reflectance/glossy_method.h"
 
 namespace weft::bench {
 namespace {
 
 enum class Cloth {
   kSmooth,  ///< Lambert's law
-  kSatin    ///< and a highlight of the half vector, exponent 24, as strong as half the diffuse albedo
+  kSatin,   ///< and a highlight of the half vector, exponent 24, as strong as half the diffuse albedo
+  kYarns    ///< dark, with a lobe that is narrower along the yarn; warp and weft in turn
 };
 
 constexpr double kClothAlbedo = 0.4, kPeriod_px = 24, kSteepest_deg = 12, kLobe = 0.2, kExponent = 24;
+constexpr double kDarkAlbedo = 0.06;
+const solver::Lobe kYarnLobe = {
+    .family = solver::LobeFamily::kAnisotropicGgx, .alpha = 0.35, .f0 = 0.05, .along = 0.4};
 constexpr double kElectronsPerCount = 2.7, kReadNoise = 1.2;  // counts
 
 // A standard normal deviate that belongs to a number (splitmix64, Steele et al. 2014; Box and Muller 1958).
@@ -58,15 +66,20 @@ Vec3 weave_normal(int x, int y) {
   return normalized({slope * std::sin(turn * x), slope * std::sin(turn * y), 1});
 }
 
-// What cloth reflects of light of strength 1.
-double reflected(Cloth cloth, Vec3 n, Vec3 l) {
+// What cloth reflects of light of strength 1 at a pixel.
+double reflected(Cloth cloth, int x, int y, Vec3 l) {
+  const Vec3 n = weave_normal(x, y);
+  if (cloth == Cloth::kYarns) {
+    const bool is_weft = std::sin(2 * kPi / kPeriod_px * x) * std::sin(2 * kPi / kPeriod_px * y) > 0;
+    return solver::modelled(kYarnLobe, kDarkAlbedo * n, {l, {0, 0, 1}}, is_weft ? kPi / 2 : 0);
+  }
   const double diffuse = kClothAlbedo * std::max(0.0, dot(n, l));
   if (cloth == Cloth::kSmooth) return diffuse;
   const Vec3 half = normalized(l + Vec3{0, 0, 1});
   return diffuse + kLobe * std::pow(std::max(0.0, dot(n, half)), kExponent);
 }
 
-// Puts cloth of albedo 0.4 before the lights of grey mosaics (bench/base/yardsticks.h), with photon and read
+// Puts cloth before the lights of grey mosaics (bench/base/yardsticks.h), with photon and read
 // noise: a weave of 24 pixels a period whose slopes reach 12 degrees, seen from above. Counts are a function
 // of the pixel alone.
 void put_cloth(solve::Photographs& photographs, Cloth cloth, int threads) {
@@ -78,8 +91,7 @@ void put_cloth(solve::Photographs& photographs, Cloth cloth, int threads) {
       const int y = static_cast<int>(row);
       for (int x = 0; x < photographs.size.width; ++x) {
         const LightField::Light light = photographs.field->at(k, frame.cfa.channel_at(x, y), x, y);
-        const double counts =
-            light.strength * seconds * range * reflected(cloth, weave_normal(x, y), light.direction);
+        const double counts = light.strength * seconds * range * reflected(cloth, x, y, light.direction);
         const std::uint64_t site = (k * static_cast<std::size_t>(photographs.size.height) + row) * 0x100000 +
                                    static_cast<unsigned>(x);
         const double sigma = std::sqrt(counts / kElectronsPerCount + kReadNoise * kReadNoise);
@@ -111,6 +123,33 @@ Result<Timing> time_method(const solve::Photographs& photographs, const solver::
   if (failure) return *failure;
   // Eleven frames of counts in; normal, albedo, their sigmas, residual and status out.
   return Timing{seconds, static_cast<double>(photographs.size.pixels()), 2 * (kLights + 1) + 4.0 * 11 + 2};
+}
+
+// What a level takes, less what it would take of a frame without pixels: the seconds of two frames, one with
+// a quarter of the pixels of the other, as a line.
+struct FixedTime {
+  double seconds = 0, ns_per_pixel = 0;
+};
+
+Result<FixedTime> time_level(solver::Level level, Cloth cloth, Size size, int threads) {
+  std::array<double, 2> seconds = {}, pixels = {};
+  for (const std::size_t i : {0U, 1U}) {
+    const Size frame = i == 0 ? Size{size.width / 2, size.height / 2} : size;
+    const LightField field = *LightField::make(bench_lights(1, true), bench_camera(frame), frame, 0);
+    solve::Photographs photographs = grey_mosaics(field, frame, threads);
+    put_cloth(photographs, cloth, threads);
+    std::optional<Error> failure;
+    seconds[i] = least_seconds(kSolveRepeats, [&] {
+      const auto done = solve::solve_frame(photographs, solver::method_of(level), solve::kSolveTile,
+                                           {threads, {}, [](std::string_view, double) {}},
+                                           [](const solve::MapBand&) { return Result<void>(); });
+      if (!done) failure = done.error();
+    });
+    if (failure) return *failure;
+    pixels[i] = static_cast<double>(frame.pixels());
+  }
+  const double a_pixel = (seconds[1] - seconds[0]) / (pixels[1] - pixels[0]);
+  return FixedTime{seconds[0] - a_pixel * pixels[0], a_pixel * 1e9};
 }
 
 // Planes whose rows lie side by side, as the tiles of a solve have them. Thirty planes of 64 MB, one behind
@@ -186,7 +225,9 @@ Timing time_seed(const LightField& field, Size size, int threads) {
 ///   copy    C: memcpy that reads and writes as many bytes in all as the bare kernel does
 ///   unpack  U: LibRaw's open and unpack of the eleven frames as DNG files
 /// and the rows bare, fast, least-squares and seed (on fewer pixels: it takes as long a pixel).
-/// `standard` also with the channels .model of sigma, which a solve of a session writes.
+/// `standard` also with the channels .model of sigma, which a solve of a session writes, and `robust` with a
+/// lobe that is known, of two yarns. Rows with `fixed_s` are whole levels with all their stages, their
+/// seconds as a line over two sizes: what a frame without pixels would take, and what each pixel adds.
 /// `ratio_to_copy` is against a copy of the bytes that the row itself moves, `ratio_to_unpack` against U.
 Result<Rows> solve_speed(const StudyOptions& options) {
   const int threads = resolved_threads(options.threads);
@@ -250,9 +291,31 @@ Result<Rows> solve_speed(const StudyOptions& options) {
       rows.back()["sigma"] = "with .model";
     }
   }
+  put_cloth(photographs, Cloth::kYarns, threads);
+  const std::unique_ptr<solver::Method> standard = solver::standard_method();
+  const Result<Timing> with_lobe = time_method(
+      photographs,
+      *solver::glossy_method(*standard, {{.lobe = kYarnLobe}}, solver::Sight(std::nullopt, 0), 1), threads);
+  if (!with_lobe) return with_lobe.error();
+  add("quality", "robust", *with_lobe);
+  rows.back()["cloth"] = "yarns";
+  rows.back()["lobe"] = solver::name_of(kYarnLobe.family);
   for (Json& row : rows) {
     row["times_quicker_than_seed"] =
         (seed.seconds / seed.pixels) / (row["ns_per_pixel"].get<double>() * 1e-9);
+  }
+  for (const auto& [level, cloth] :
+       {std::pair{solver::Level::kRobust, Cloth::kSmooth}, std::pair{solver::Level::kRobust, Cloth::kYarns},
+        std::pair{solver::Level::kReference, Cloth::kSmooth}}) {
+    const Result<FixedTime> time = time_level(level, cloth, size, threads);
+    if (!time) return time.error();
+    rows.push_back({{"quality", solver::method_of(level).name},
+                    {"megapixels", pixels * 1e-6},
+                    {"threads", threads},
+                    {"ns_per_pixel", time->ns_per_pixel},
+                    {"ratio_to_unpack", time->ns_per_pixel * 1e-9 / *unpack},
+                    {"cloth", cloth == Cloth::kSmooth ? "smooth" : "yarns"},
+                    {"fixed_s", time->seconds}});
   }
   return rows;
 }
