@@ -45,8 +45,16 @@ test('a cloth that moved is told by LED', () => {
   expect(stage({registration}, 'Registration').says).toBe('The cloth moved and these were left out: LED 4 by 5.0 px.');
 });
 
+test('a blade\'s shadow says how sure it is', () => {
+  const told = (cloth_spread: object) => stage({conditions: {cloth_spread}}, 'Light that spreads in the cloth');
+  const measured = told({said: 'measured', share: 0.37, share_sigma: 0.06, mean_mm: 0.25, mean_sigma_mm: 0.04, led: 1});
+  expect(measured.says).toBe('37 % ± 6.0 % left 0.25 ± 0.040 mm away in the mean, as the blade\'s shadow tells, and was taken off.');
+  const none = told({said: 'not_observable', share: 0.02, share_sigma: 0.02, led: 1});
+  expect(none).toMatchObject({ran: false, says: 'The blade\'s shadow shows none: 2.0 % ± 2.0 %.'});
+});
+
 test('conditions say what they corrected', () => {
-  const conditions = {hot_photosites: 12, veil: 0.004, cloth_spread: {share: 0.3, mean_mm: 0.25}, drift: [{led: 1, factor: 0.98, from: 'repeat'}, {led: 2, factor: 1.01, from: 'repeat'}]};
+  const conditions = {hot_photosites: 12, veil: 0.004, cloth_spread: {said: 'given', share: 0.3, mean_mm: 0.25}, drift: [{led: 1, factor: 0.98, from: 'repeat'}, {led: 2, factor: 1.01, from: 'repeat'}]};
   expect(stage({conditions}, 'Bad photosites').says).toBe('12 were given their neighbours\' counts.');
   expect(stage({conditions}, 'Stray light of the lens').says).toBe('0.40 % was taken off.');
   expect(stage({conditions}, 'Light that spreads in the cloth').says).toBe('30 % left 0.25 mm away in the mean, and was taken off.');
