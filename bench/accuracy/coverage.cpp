@@ -270,7 +270,7 @@ Result<void> add_rows(AccuracyScene scene, double megapixels, int threads, Rows&
                 {"solved", solved->expected.solved}};
     if (solved->facts.size == size) {
       const Result<solve::TruthError> error =
-          solve::error_against(truth / "normal.exr", options.output / "normal.exr");
+          solve::error_against(truth / "normal.exr", options.output / "normal.exr", threads);
       if (!error) return error.error();
       row["true_deg"] = error->normal.mean_deg;
       row["ratio"] = price.error.total_deg / error->normal.mean_deg;

@@ -21,7 +21,8 @@ struct TruthError {
 };
 
 /// Compares two normal maps on disk.
-Result<TruthError> error_against(const std::filesystem::path& truth, const std::filesystem::path& normal);
+Result<TruthError> error_against(const std::filesystem::path& truth, const std::filesystem::path& normal,
+                                 int threads);
 
 /// A picture as PNG with 8 bits a channel.
 Result<void> write_png(const std::filesystem::path& file, const report::Picture& picture);
@@ -34,9 +35,9 @@ class Pictures {
 
   /// Writes albedo.png (sRGB; a relative albedo is scaled, and the sheet says by how much), normal.png,
   /// relit.png, error.png where there is a truth, else status_preview.png, and sheet.png with all of them
-  /// under `title`. Returns their names.
+  /// under `title`. Returns their names. The files do not depend on the threads.
   Result<std::vector<std::string>> write(const std::filesystem::path& folder, const std::string& title,
-                                         bool absolute_albedo, const TruthError* error) const;
+                                         bool absolute_albedo, const TruthError* error, int threads) const;
 
  private:
   report::Downsampler normal_, albedo_;

@@ -375,7 +375,8 @@ class Run {
   Result<void> draw(const Pictures& pictures) {
     std::optional<TruthError> error;
     if (!plan_.truth.empty() && facts_.size == plan_.size) {
-      Result<TruthError> measured = error_against(plan_.truth, partial_.path() / "normal.exr");
+      Result<TruthError> measured =
+          error_against(plan_.truth, partial_.path() / "normal.exr", context_.threads);
       if (!measured) return std::move(measured).error();
       error = std::move(*measured);
       const NormalComparison& normal = error->normal;
@@ -383,7 +384,7 @@ class Run {
     }
     Result<std::vector<std::string>> names =
         pictures.write(partial_.path(), plan_.session.fabric, facts_.albedo_scale == AlbedoScale::kAbsolute,
-                       error ? &*error : nullptr);
+                       error ? &*error : nullptr, context_.threads);
     if (!names) return std::move(names).error();
     facts_.pictures = std::move(*names);
     if (is_there(partial_.path() / "reflectance.png")) facts_.pictures.emplace_back("reflectance.png");
