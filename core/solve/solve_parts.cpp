@@ -95,13 +95,15 @@ void describe(Fields& fields, RoomLightFacts& r) {
 }
 
 void describe(Fields& fields, ClothSpreadFacts& s) {
-  fields.value({"said",
-                "given by a person; measured in a blade's shadow and undone; not_observable there, and left "
-                "as it is"},
-               s.said);
+  fields.value(
+      {"said",
+       "given by a person; measured in a blade's shadow; told by the cloth's own photographs; all are "
+       "undone. not_observable in a blade's shadow: left as it is"},
+      s.said);
   fields.value({"share", "Of the light that leaves beside where it entered", {}, kMustSay}, s.share);
   fields.value({"share_sigma", "Standard deviation of it"}, s.share_sigma);
   fields.value({"mean_mm", "How far away, in the mean, mm"}, s.mean_mm);
+  fields.value({"mean_px", "The same in pixels, where it was undone"}, s.mean_px);
   fields.value({"mean_sigma_mm", "Standard deviation of it, mm"}, s.mean_sigma_mm);
   fields.value({"led", "That threw the blade's shadow", kAboveZero}, s.led);
 }

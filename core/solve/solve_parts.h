@@ -98,10 +98,13 @@ struct RoomLightFacts {
 };
 /// How cloth spreads the light that enters it.
 struct ClothSpreadFacts {
-  std::string said = "given";          ///< by a person; "measured", or "not_observable" in a blade's shadow
+  std::string said = "given";          ///< by a person; "measured" or "not_observable" in a blade's
+                                       ///< shadow; "told" by the cloth itself
   double share = 0;                    ///< of the light that leaves elsewhere
-  std::optional<double> mean_mm = {};  ///< how far away; none where it is not observable
-  std::optional<double> share_sigma = {}, mean_sigma_mm = {};  ///< of what was measured
+  std::optional<double> mean_mm = {};  ///< how far away; none where it is not observable, or
+                                       ///< nothing says how large a pixel is
+  std::optional<double> mean_px = {};  ///< the same, where it was undone
+  std::optional<double> share_sigma = {}, mean_sigma_mm = {};  ///< of what was measured or told
   std::optional<int> led = {};                                 ///< that threw the blade's shadow
 };
 /// What was found in the frames and corrected (docs/conditions.md).

@@ -86,8 +86,8 @@ std::array<solver::SeenAt, 3> seen_at(const Planes& planes, int side) {
   return places;
 }
 
-BesideLight beside_light(const Frames& frames, const Planes& planes, Size size,
-                         double share, double mean_px, const JobContext& context) {
+BesideLight beside_light(const Frames& frames, const Planes& planes, Size size, double share, double mean_px,
+                         const JobContext& context) {
   BesideLight beside = {share, {}};
   const int side = solver::side_of_spread_cells(mean_px, planes.count == 1);
   const std::size_t count = std::visit([](const auto& kind) { return kind.count(); }, frames);
@@ -156,11 +156,27 @@ std::optional<Spreading> told_by_cloth(const Exposures& exposures, std::optional
   const std::optional<solver::ToldSpread> told = solver::told_spread(cloth.windows, threads);
   if (!told) return std::nullopt;
   const double mean_px = std::max(told->mean_cells * cloth.cell_px, kLeastDistance_px);
-  Spreading spreading = {{.said = "told", .share = told->share, .share_sigma = told->sigma_share},
-                         mean_px,
-                         told->sigma_slope};
+  Spreading spreading = {
+      {.said = "told", .share = told->share, .share_sigma = told->sigma_share}, mean_px, told->sigma_slope};
   if (mm) spreading.facts.mean_mm = mean_px * *mm;
   return spreading;
+}
+
+// The mean of both by how sure they are, where they agree; else what the blade measured.
+Spreading joined(const Spreading& blade, const Spreading& cloth, double mm) {
+  constexpr double kAgree = 2.5;  // sigma
+  const double of_blade = blade.facts.share_sigma.value_or(0), of_cloth = cloth.facts.share_sigma.value_or(0);
+  const double apart = std::abs(blade.facts.share - cloth.facts.share);
+  if (!(of_blade > 0 && of_cloth > 0) || apart > kAgree * std::hypot(of_blade, of_cloth)) return blade;
+  const double weight = 1 / (1 + std::pow(of_blade / of_cloth, 2));  // of the blade
+  const auto between = [&](double a, double b) { return weight * a + (1 - weight) * b; };
+  Spreading both = blade;
+  both.facts.share = between(blade.facts.share, cloth.facts.share);
+  both.facts.share_sigma = of_blade * std::sqrt(weight);
+  both.mean_px = std::exp(between(std::log(blade.mean_px), std::log(cloth.mean_px)));
+  both.facts.mean_mm = both.mean_px * mm;
+  both.sigma_slope = std::min(blade.sigma_slope, cloth.sigma_slope);
+  return both;
 }
 
 Result<std::optional<Spreading>> told_spreading(const Exposures& exposures) {
@@ -173,10 +189,10 @@ Result<std::optional<Spreading>> told_spreading(const Exposures& exposures) {
     }
   }
   if (plan.cloth_spread) return mm ? told_by_person(exposures, *mm) : std::optional<Spreading>();
-  if (plan.blade) {
-    if (std::optional<Spreading> told = told_by_blade(exposures, *mm)) return told;
-  }
-  return told_by_cloth(exposures, mm);
+  const std::optional<Spreading> blade = plan.blade ? told_by_blade(exposures, *mm) : std::nullopt;
+  if (blade && blade->mean_px == 0) return blade;
+  const std::optional<Spreading> cloth = told_by_cloth(exposures, mm);
+  return blade && cloth ? std::optional(joined(*blade, *cloth, *mm)) : blade ? blade : cloth;
 }
 
 }  // namespace
@@ -190,6 +206,7 @@ Result<void> take_off_spread_light(const Exposures& exposures) {
   photographs.conditions.facts.cloth_spread = spreading.facts;
   photographs.sigma_slope = spreading.sigma_slope;
   if (spreading.mean_px == 0) return {};
+  photographs.conditions.facts.cloth_spread->mean_px = spreading.mean_px;
   const auto take_off = [&](Frames& frames) {
     take_off_beside(beside_light(frames, photographs.planes(), photographs.size, spreading.facts.share,
                                  spreading.mean_px, exposures.context),

@@ -270,10 +270,6 @@ Result<void> plan_second_pose(const fs::path& folder, const solver::MethodName& 
                  "one of the two was scanned through crossed and parallel films, the other was not",
                  "scan both in the same way");
   second->cloth_spread = plan.cloth_spread;
-  if (plan.blade && !second->blade && !plan.cloth_spread)
-    plan.warnings.emplace_back(
-        "the second pose has no shot with a blade: light that spreads in its cloth was left; say "
-        "--cloth-spread, or scan it with --blade");
   plan.input.second_pose = object_of(second->input);
   plan.second_pose = std::make_shared<const SolvePlan>(std::move(*second));
   return {};

@@ -27,8 +27,8 @@ constexpr std::array kShares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
 constexpr std::array kMeans = {2.0, 3.0, 4.5, 6.5, 9.0};
 constexpr std::array<std::size_t, 2> kFirstMeans = {1, 3};  // that all shares are tried with
 constexpr double kBeside = 0.15;                            // of a share
-// Beside what trials differ by, share and slopes are off by this, and slopes by this share of how far they are
-// turned up (as the logarithm of the factor).
+// Beside what trials differ by, share and slopes are off by this, and slopes by this share of how far they
+// are turned up (as the logarithm of the factor).
 constexpr double kSigmaOfModel = 0.02, kSigmaOfGain = 0.12;
 constexpr double kLeastSlope = 0.04, kLeastAcross = 0.25;  // rms; of the lesser direction over the other
 constexpr int kMirrored = 20, kReach = 16, kDirections = 8, kEdge = 8, kBlock = 24;

@@ -96,8 +96,29 @@ TEST_F(BladedSession, WhoseBladeIsNotThereIsSolvedWithAWarning) {
   scene.blade.x_mm = 500;
   make(scene);
   const solve::Photographs session = loaded(planned());
-  EXPECT_FALSE(session.conditions.facts.cloth_spread);
   EXPECT_THAT(session.conditions.of_frames, ElementsAre(testing::Field(&Verdict::name, "BLADE_SHADOW")));
+  ASSERT_TRUE(session.conditions.facts.cloth_spread);
+  EXPECT_EQ(session.conditions.facts.cloth_spread->said, "told") << "by the cloth itself";
+}
+
+TEST_F(BladedSession, WithoutABladeIsToldByTheClothItself) {
+  for (const bool interreflection : {false, true}) {
+    simulator::Scene scene = bladed_cotton();
+    scene.effects.interreflection = interreflection;
+    make(scene);
+    solve::SolvePlan plan = planned();
+    plan.blade.reset();
+    const solve::Photographs session = loaded(plan);
+    ASSERT_TRUE(session.conditions.facts.cloth_spread) << "interreflection " << interreflection;
+    const ClothSpreadFacts& spread = *session.conditions.facts.cloth_spread;
+    EXPECT_EQ(spread.said, "told");
+    EXPECT_NEAR(spread.share, kShare, 0.06) << "interreflection " << interreflection;
+    EXPECT_NEAR(spread.mean_mm.value_or(0), kMean_mm, 0.1) << "interreflection " << interreflection;
+    EXPECT_GT(session.sigma_slope, 0);
+    EXPECT_LT(session.sigma_slope, 0.15);
+    EXPECT_TRUE(std::get<solve::Mosaics>(session.frames).beside) << "it is taken off";
+    fs::remove_all(folder_);
+  }
 }
 
 }  // namespace

@@ -66,10 +66,11 @@ TEST(ClothSpread, GivesTheSameBytesByAnyNumberOfThreads) {
 }
 
 TEST(ClothSpread, CellsAreEvenAndGrowWithTheDistance) {
-  EXPECT_EQ(side_of_spread_cells(0.5), 2);
-  EXPECT_EQ(side_of_spread_cells(7.5), 4);
-  EXPECT_EQ(side_of_spread_cells(75) % 2, 0);
-  EXPECT_NEAR(side_of_spread_cells(75), 75 * 2 / kPi / 1.5, 1.5);
+  EXPECT_EQ(side_of_spread_cells(0.5, true), 2);
+  EXPECT_EQ(side_of_spread_cells(7.5, true), 4);
+  EXPECT_EQ(side_of_spread_cells(75, true) % 2, 0);
+  EXPECT_NEAR(side_of_spread_cells(75, true), 75 * 2 / kPi / 1.5, 1.5);
+  EXPECT_EQ(side_of_spread_cells(3, false), 1);
 }
 
 }  // namespace

@@ -48,15 +48,21 @@ test('a cloth that moved is told by LED', () => {
 test('a blade\'s shadow says how sure it is', () => {
   const told = (cloth_spread: object) => stage({conditions: {cloth_spread}}, 'Light that spreads in the cloth');
   const measured = told({said: 'measured', share: 0.37, share_sigma: 0.06, mean_mm: 0.25, mean_sigma_mm: 0.04, led: 1});
-  expect(measured.says).toBe('37 % ± 6.0 % left 0.25 ± 0.040 mm away in the mean, as the blade\'s shadow tells, and was taken off.');
+  expect(measured.says).toBe('37 % ± 6.0 % left 0.25 ± 0.040 mm away, as the blade tells, and was taken off.');
   const none = told({said: 'not_observable', share: 0.02, share_sigma: 0.02, led: 1});
-  expect(none).toMatchObject({ran: false, says: 'The blade\'s shadow shows none: 2.0 % ± 2.0 %.'});
+  expect(none).toMatchObject({ran: false, says: 'The blade shows none: 2.0 % ± 2.0 %.'});
+});
+
+test('a cloth of unknown size says in pixels how its light spreads', () => {
+  const {ran, says} = stage({conditions: {cloth_spread: {said: 'told', share: 0.25, share_sigma: 0.04, mean_px: 5.2}}}, 'Light that spreads in the cloth');
+  expect(ran).toBe(true);
+  expect(says).toBe('25 % ± 4.0 % left 5.2 pixels away, as the cloth tells, and was taken off.');
 });
 
 test('conditions say what they corrected', () => {
   const conditions = {hot_photosites: 12, veil: 0.004, cloth_spread: {said: 'given', share: 0.3, mean_mm: 0.25}, drift: [{led: 1, factor: 0.98, from: 'repeat'}, {led: 2, factor: 1.01, from: 'repeat'}]};
   expect(stage({conditions}, 'Bad photosites').says).toBe('12 were given their neighbours\' counts.');
   expect(stage({conditions}, 'Stray light of the lens').says).toBe('0.40 % was taken off.');
-  expect(stage({conditions}, 'Light that spreads in the cloth').says).toBe('30 % left 0.25 mm away in the mean, and was taken off.');
+  expect(stage({conditions}, 'Light that spreads in the cloth').says).toBe('30 % left 0.25 mm away, and was taken off.');
   expect(stage({conditions}, 'Drift of LEDs').says).toBe('Measured by repeated shots, 2.0 % at most.');
 });

@@ -17,6 +17,7 @@ interface Spread {
   share: number;
   share_sigma?: number;
   mean_mm?: number;
+  mean_px?: number;
   mean_sigma_mm?: number;
 }
 
@@ -96,12 +97,13 @@ function foundOf(hot: number): string {
   return hot === 0 ? 'None was found.' : `${hot} were given their neighbours' counts.`;
 }
 
-function spreadInWords({said, share, share_sigma, mean_mm, mean_sigma_mm}: Spread): string {
+function spreadInWords({said, share, share_sigma, mean_mm, mean_px, mean_sigma_mm}: Spread): string {
   const sigma = (value: number | undefined, inWords: (value: number) => string) => (value === undefined ? '' : ` ± ${inWords(value)}`);
   const amount = percent(share) + sigma(share_sigma, percent);
-  if (mean_mm === undefined) return `The blade's shadow shows none: ${amount}.`;
-  const distance = `${digits(mean_mm)}${sigma(mean_sigma_mm, digits)} mm`;
-  return `${amount} left ${distance} away in the mean${said === 'measured' ? ", as the blade's shadow tells" : ''}, and was taken off.`;
+  if (said === 'not_observable') return `The blade shows none: ${amount}.`;
+  const by = said === 'given' ? '' : `, as the ${said === 'told' ? 'cloth' : 'blade'} tells`;
+  const distance = mean_mm === undefined ? `${digits(mean_px ?? 0)} pixels` : `${digits(mean_mm)}${sigma(mean_sigma_mm, digits)} mm`;
+  return `${amount} left ${distance} away${by}, and was taken off.`;
 }
 
 function ofConditions(conditions: Conditions): SolveStage[] {
@@ -112,8 +114,8 @@ function ofConditions(conditions: Conditions): SolveStage[] {
     {name: 'Stray light of the lens', ran: veil !== undefined, says: veil === undefined ? 'Not known of this rig.' : `${percent(veil)} was taken off.`},
     {
       name: 'Light that spreads in the cloth',
-      ran: spread?.mean_mm !== undefined,
-      says: spread ? spreadInWords(spread) : 'Nobody said how, and no shot with a blade tells.',
+      ran: spread !== undefined && spread.said !== 'not_observable',
+      says: spread ? spreadInWords(spread) : 'None was found.',
     },
     {name: 'Brackets', ran: brackets > 0, says: brackets > 0 ? `${brackets} shots of other exposures were joined.` : 'The session has none.'},
     {
