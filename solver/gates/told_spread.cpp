@@ -30,7 +30,8 @@ constexpr double kBeside = 0.15;                            // of a share
 // Beside what trials differ by, share and slopes are off by this, and slopes by this share of how far they
 // are turned up (as the logarithm of the factor).
 constexpr double kSigmaOfModel = 0.02, kSigmaOfGain = 0.12;
-constexpr double kLeastSlope = 0.04, kLeastAcross = 0.25;  // rms; of the lesser direction over the other
+// Rms; steeper cloth hides light from itself, which passes for spread. The lesser direction over the other.
+constexpr double kLeastSlope = 0.04, kMostSlope = 0.55, kLeastAcross = 0.25;
 constexpr int kMirrored = 20, kReach = 16, kDirections = 8, kEdge = 8, kBlock = 24;
 constexpr double kOutlier = 1.5;  // of the median step
 constexpr double kLeastUp = 0.1;  // of a normal
@@ -397,8 +398,9 @@ bool can_tell(std::span<const LambertWindow> windows) {
     }
   }
   if (cells == 0) return false;
-  return std::min(x2, y2) > std::pow(kLeastAcross, 2) * std::max(x2, y2) &&
-         (x2 + y2) / cells > std::pow(kLeastSlope, 2);
+  const double slope = std::sqrt((x2 + y2) / cells);
+  return std::min(x2, y2) > std::pow(kLeastAcross, 2) * std::max(x2, y2) && slope > kLeastSlope &&
+         slope < kMostSlope;
 }
 
 ToldSpread mean_of(const std::vector<Trial>& trials, const Trial& none, const Trial& best) {

@@ -251,8 +251,13 @@ TEST(Bench, PrintsOneJsonDocument) {
   ASSERT_FALSE(json.at("rows").empty());
   for (const Json& row : json["rows"]) {
     EXPECT_TRUE(row.contains("quality") || row.contains("method") || row.contains("effect")) << row;
-    EXPECT_GT(row.at("ns_per_pixel").get<double>(), 0) << row;
     EXPECT_GT(row.at("threads").get<int>(), 0) << row;
+    // Whole levels: a line over two sizes, which on so few pixels may come out flat.
+    if (row.contains("fixed_s")) {
+      EXPECT_GE(row.at("ns_per_pixel").get<double>(), 0) << row;
+      continue;
+    }
+    EXPECT_GT(row.at("ns_per_pixel").get<double>(), 0) << row;
     EXPECT_GT(row.at("ratio_to_copy").get<double>(), 0) << row;
   }
 }
