@@ -148,7 +148,7 @@ Result<FixedTime> time_level(solver::Level level, Cloth cloth, Size size, int th
     if (failure) return *failure;
     pixels[i] = static_cast<double>(frame.pixels());
   }
-  const double a_pixel = (seconds[1] - seconds[0]) / (pixels[1] - pixels[0]);
+  const double a_pixel = std::max(0.0, seconds[1] - seconds[0]) / (pixels[1] - pixels[0]);
   return FixedTime{seconds[0] - a_pixel * pixels[0], a_pixel * 1e9};
 }
 
