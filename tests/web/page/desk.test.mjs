@@ -6,7 +6,7 @@ import {luminanceOf, picture, pixelsOf, violations, violationsByWidth, visit} fr
 import {mostToTell_ms, startRig, until} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
-const scanTakes_ms = 60_000;
+const scanTakes_ms = 150_000;
 const windows = [[1280, 720], [1920, 1080], [3840, 2160]];
 let browser, rig, fine;
 before(async () => {

@@ -260,7 +260,7 @@ test('one button makes the maps and the export of a scan that has but a preview'
   for (const name of ['solve', 'maps', 'export']) await rowOfChain(name).getByText('● fresh').waitFor({timeout: 120000});
   assert.match(await rowOfChain('export').innerText(), /png16, of (fast|standard|robust|reference), [0-9.]+ degrees on [0-9]+ % of the cloth/);
   await chain.getByText('All of it is fresh.').waitFor();
-  await chain.getByText('● good').waitFor();
+  await chain.getByText('● good').waitFor({timeout: 120000});
   assert.deepEqual(await violationsByWidth(page, 'session-chain'), []);
   await visitor.leave();
 });
