@@ -78,6 +78,10 @@ Result<Json> row_of(const KindOfCloth& cloth, std::uint32_t seed, const solver::
   row["ratio"] = held->true_deg / solved->expected.total_deg;
   row["over_sigma"] = held->over_sigma;
   row["beyond_3"] = held->beyond_3;
+  const std::optional<ConditionFacts>& conditions = solved->facts.conditions;
+  const bool is_told = conditions && conditions->cloth_spread;
+  row["spreads"] = cloth.scene.material.translucency.share;
+  row["told"] = is_told ? conditions->cloth_spread->share : 0;
   row["said"] = said_by(solved->facts);
   return row;
 }

@@ -20,8 +20,8 @@ struct ClothsOptions {
 /// Kinds of cloth, drawn `runs` times each, written as photographs or sessions and solved as the product
 /// solves them: a row for each drawing and level.
 /// true_deg: mean error of normal.exr. foretold_deg: what the report lets one expect, and their ratio.
-/// over_sigma: median of error over sigma.exr's normal_deg; beyond_3: share beyond three of it. said: names
-/// of the warnings.
+/// over_sigma: median of error over sigma.exr's normal_deg; beyond_3: share beyond three of it. spreads:
+/// share of the light that leaves elsewhere, and told: of what was taken off. said: names of the warnings.
 Result<Rows> cloths_table(const ClothsOptions& asked, const StudyOptions& options);
 
 }  // namespace weft::bench

@@ -97,4 +97,14 @@ void transform_plane(View<std::complex<float>> plane, int threads) {
   transform_lines(width, height, [&](int line, int i) -> std::complex<float>& { return plane(line, i); });
 }
 
+double frequency(int k, int length) {
+  return (k <= length / 2 ? k : k - length) / static_cast<double>(length);
+}
+
+int mirrored(int i, int length) {
+  const int turn = 2 * length;
+  const int at = ((i % turn) + turn) % turn;
+  return at < length ? at : turn - 1 - at;
+}
+
 }  // namespace weft

@@ -31,4 +31,10 @@ class FourierTransform {
 /// bytes for any number of them. Arithmetic is in double, each of the two passes rounds to float32.
 void transform_plane(View<std::complex<float>> plane, int threads);
 
+/// Cycles a sample of number k of a transform of this length, from -1/2 to 1/2.
+double frequency(int k, int length);
+
+/// The sample, 0 to `length` - 1, that a mirror at either end shows at `i`.
+int mirrored(int i, int length);
+
 }  // namespace weft

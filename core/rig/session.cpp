@@ -135,8 +135,7 @@ Result<void> check_shots(const Session& session, const std::string& where) {
                                 exposure_words(first->exposure_us), first->iso, first->f_number, shot.file,
                                 exposure_words(shot.exposure_us), shot.iso, shot.f_number),
                     "scan again with one exposure for all shots, mark an odd lit one as bracket, or take an "
-                    "odd dark one "
-                    "out: then black stands in its place");
+                    "odd dark one out: then black stands in its place");
     }
   }
   return {};

@@ -135,13 +135,12 @@ double bent_within(const Solved& maps, int cell_px) {
 
 // The largest that yarns in the middle of the frame allow.
 int cell_of(const Photographs& photographs) {
-  constexpr int least = 1;
-  int largest = least;
+  int largest = 1;
   while (2 * largest <= kLargestCell && cells_at_most(photographs.size, 2 * largest) >= kSide) largest *= 2;
-  if (largest == least) return least;
+  if (largest == 1) return 1;
   const int side = kSide * largest;
   const Solved probe = solved(photographs, tile_at(photographs.size, side, 0.5, 0.5));
-  int cell = least;
+  int cell = 1;
   while (2 * cell <= largest && bent_within(probe, 2 * cell) < kMostBent) cell *= 2;
   return cell;
 }

@@ -46,8 +46,7 @@ struct SolvePlan {
   solver::Extent extent = solver::Extent::kTiles;  ///< of the level that will be solved by
   std::shared_ptr<const SolvePlan> second_pose;    ///< in which the lobe is sought too; null: none
 
-  /// That is to be undone, as a person says; share 0: none. Else as the blade's shadow tells, where there is
-  /// one.
+  /// That is to be undone, as a person says; share 0: none. Else as the cloth and the blade's shadow tell.
   std::optional<solver::ClothSpread> cloth_spread;
 
   bool asks_frames = false;  ///< whether frames and dark shot are asked if they lie: those of a cloth are

@@ -122,8 +122,8 @@ void describe_readings(Fields& fields, SolveRequest& r) {
   fields.value(
       {.name = "cloth_spread",
        .says = "Share of the light that leaves the cloth beside where it entered, which is taken off: "
-               "0.2 to 0.4 of white cotton, wool and chiffon, 0: none; default what a shot with a blade "
-               "tells (weft scan --blade)",
+               "0.2 to 0.4 of white cotton, wool and chiffon, 0: none; default what the cloth and a shot "
+               "with a blade tell (weft scan --blade)",
        .range = {0, solver::kMostSpread}},
       r.options.cloth_spread);
   fields.value(

@@ -36,8 +36,9 @@ struct ToldSpread {
 /// and not crests, spreading dims both, so c is fitted beside it. Trials are held against each other by the
 /// steps of log length from cell to cell, which the colours of yarns disturb at few cells; outliers count
 /// after Cauchy. None is returned where no trial is better than none by kLeastGain and by kLeastSure, where
-/// slopes lie in one direction, which tells nothing, where there are none, and where they are so steep that
-/// yarns shade each other.
+/// slopes lie in one direction, which tells nothing, where there are none, where they are so steep that
+/// yarns shade each other, and where light would leave within 2.5 cells, as yarns that are not resolved
+/// feign.
 /// The result is the mean of trials, each weighed by how sure it is to be worse than the best. At most
 /// `threads` threads (0: all); the same bytes for any number of them.
 std::optional<ToldSpread> told_spread(std::span<const LambertWindow> windows, int threads);

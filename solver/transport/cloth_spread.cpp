@@ -31,28 +31,16 @@ int smooth_length(int at_least) {
   }
 }
 
-// The place within `size` that a mirror at either end shows at `i`.
-int mirrored(int i, int size) {
-  const int turn = 2 * size;
-  const int at = ((i % turn) + turn) % turn;
-  return at < size ? at : turn - 1 - at;
-}
-
-double frequency(int k, int length) {
-  return (k <= length / 2 ? k : k - length) / static_cast<double>(length);
-}
-
 // share K / (1 - share + share K) at each frequency, seen in the middles, over the length of the inverse
 // transform.
-void filter(View<Complex> spectrum, SeenAt place, double share, double length_cells) {
+void filter(View<Complex> spectrum, SeenAt place, double share, double mean_cells) {
   const int width = spectrum.width(), height = spectrum.height();
   const double scale = 1 / (static_cast<double>(width) * height);
   for (int y = 0; y < height; ++y) {
     const double fy = frequency(y, height);
     for (int x = 0; x < width; ++x) {
-      const double fx = frequency(x, width), t = 2 * std::numbers::pi * length_cells * std::hypot(fx, fy);
-      const double spread = share / (1 + t * t);
-      const auto turned = std::polar(scale * spread / (1 - share + spread),
+      const double fx = frequency(x, width), seen = seen_of_wave(share, mean_cells, std::hypot(fx, fy));
+      const auto turned = std::polar(scale * (seen - (1 - share)) / seen,
                                      -2 * std::numbers::pi * (fx * place.x + fy * place.y));
       spectrum.row(y)[x] *= Complex(turned);
     }
@@ -67,6 +55,11 @@ void conjugate(View<Complex> plane) {
 
 }  // namespace
 
+double seen_of_wave(double share, double mean, double frequency) {
+  const double t = 2 * std::numbers::pi * length_of(mean) * frequency;
+  return 1 - share + share / (1 + t * t);
+}
+
 int side_of_spread_cells(double mean_px, bool of_mosaic) {
   const int step = of_mosaic ? 2 : 1;
   return std::max(step, step * static_cast<int>(std::lround(length_of(mean_px) / (step * kCellsADistance))));
@@ -74,8 +67,7 @@ int side_of_spread_cells(double mean_px, bool of_mosaic) {
 
 Image<float> light_from_beside(const Image<float>& seen, std::span<const SeenAt> places, double share,
                                double mean_cells, int threads) {
-  const double length_cells = length_of(mean_cells);
-  const int far = static_cast<int>(std::ceil(kFarthest * length_cells));
+  const int far = static_cast<int>(std::ceil(kFarthest * length_of(mean_cells)));
   const Size padded = {smooth_length(seen.width() + 2 * far), smooth_length(seen.height() + 2 * far)};
   Image<float> beside(seen.size(), seen.planes());
   Image<Complex> work(padded);
@@ -85,7 +77,7 @@ Image<float> light_from_beside(const Image<float>& seen, std::span<const SeenAt>
       for (int x = 0; x < padded.width; ++x) work(x, y) = seen(mirrored(x - far, seen.width()), from, p);
     }
     transform_plane(work.plane(), threads);
-    filter(work.plane(), places[static_cast<std::size_t>(p)], share, length_cells);
+    filter(work.plane(), places[static_cast<std::size_t>(p)], share, mean_cells);
     conjugate(work.plane());
     transform_plane(work.plane(), threads);
     for (int y = 0; y < seen.height(); ++y) {

@@ -18,6 +18,10 @@ struct ClothSpread {
 };
 inline constexpr double kMostSpread = 0.7;
 
+/// What is seen of a wave of light over the cloth, over what enters: (1 - share) + share K at this frequency,
+/// with K the transform of the kernel, 1 / (1 + (2 pi l f)^2). Frequency times mean distance has no unit.
+double seen_of_wave(double share, double mean, double frequency);
+
 /// Side of the cells, pixels, that carry spread light well enough: a fraction of its distance, and even for
 /// the light of a mosaic.
 int side_of_spread_cells(double mean_px, bool of_mosaic);

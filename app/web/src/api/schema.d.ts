@@ -7340,7 +7340,7 @@ export interface components {
             second_pose?: string;
             /** @description Solve although the last check of this rig's calibration did not pass before the scan: the reason, which is kept */
             accept_moved?: string;
-            /** @description Share of the light that leaves the cloth beside where it entered, which is taken off: 0.2 to 0.4 of white cotton, wool and chiffon, 0: none; default what a shot with a blade tells (weft scan --blade) */
+            /** @description Share of the light that leaves the cloth beside where it entered, which is taken off: 0.2 to 0.4 of white cotton, wool and chiffon, 0: none; default what the cloth and a shot with a blade tell (weft scan --blade) */
             cloth_spread?: number;
             /**
              * @description How far away it leaves, in the mean
@@ -7442,7 +7442,7 @@ export interface components {
             second_pose?: string;
             /** @description Solve although the last check of this rig's calibration did not pass before the scan: the reason, which is kept */
             accept_moved?: string;
-            /** @description Share of the light that leaves the cloth beside where it entered, which is taken off: 0.2 to 0.4 of white cotton, wool and chiffon, 0: none; default what a shot with a blade tells (weft scan --blade) */
+            /** @description Share of the light that leaves the cloth beside where it entered, which is taken off: 0.2 to 0.4 of white cotton, wool and chiffon, 0: none; default what the cloth and a shot with a blade tell (weft scan --blade) */
             cloth_spread?: number;
             /**
              * @description How far away it leaves, in the mean
