@@ -40,7 +40,8 @@ if(WEFT_SANITIZE)
   # Kernels are one source for all targets: two of them, with vectors and without, are watched.
   target_compile_definitions(weft_settings INTERFACE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3)")
 elseif(NOT WEFT_FUZZERS)
-  target_link_options(weft_settings INTERFACE -Wl,--gc-sections)  # what nothing calls is 4 percent of a program
+  # What nothing calls is 4 percent of a program, and functions of the same bytes are 3.
+  target_link_options(weft_settings INTERFACE -Wl,--gc-sections -Wl,--icf=all)
 endif()
 
 # Headers that most units read, compiled once. Libraries are optimised for what they measure, tests for the time that
