@@ -318,8 +318,7 @@ Result<Photographs> load_pose(const SolvePlan& plan, const JobContext& context) 
   if (Result<void> met = meet_conditions({plan, beside, *photographs, context}); !met)
     return std::move(met).error();
   photographs->conditions.seconds = watch.lap();
-  // Figures were published of luminance.
-  if (plan.clipped == Clipped::kMark) photographs->plane_weights = measure_plane_weights(*photographs);
+  photographs->plane_weights = measure_plane_weights(*photographs);
   return photographs;
 }
 
