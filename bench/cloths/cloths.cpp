@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "bench/cloths/block_errors.h"
 #include "bench/cloths/photographs.h"
 #include "core/base/statistics.h"
 #include "core/base/temporary_folder.h"
@@ -100,6 +101,11 @@ Result<void> add_levels(const KindOfCloth& cloth, std::uint32_t seed, const Clot
     options.output = scratch / level.name;
     options.previews = false;
     const Result<solve::SolveReport> solved = solve(options);
+    if (solved && !asked.blocks.empty()) {
+      const Result<void> ok =
+          append_blocks({cloth.name, seed, level.name, asked.as_session}, *solved, truth, asked.blocks);
+      if (!ok) return ok;
+    }
     if (Result<void> ok = add_row(rows, row_of(cloth, seed, level, solved, options.output, truth)); !ok)
       return ok;
   }

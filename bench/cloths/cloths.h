@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct ClothsOptions {
   std::string kind;                  ///< one alone; empty: all of the set
   std::vector<std::string> methods;  ///< levels; empty: all five
   bool as_session = false;  ///< mosaics of a calibrated rig; else loose photographs of relative scale
+  std::filesystem::path blocks = {};  ///< file that gets a line for each block of each solve, if there is one
 };
 
 /// Kinds of cloth, drawn `runs` times each, written as photographs or sessions and solved as the product

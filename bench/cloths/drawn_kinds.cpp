@@ -313,6 +313,87 @@ void ball(KindOfCloth& c, Draws& d) {
   colour(c, d.between(0.2, 0.6), d);
 }
 
+void linen(KindOfCloth& c, Draws& d) {
+  plain(c, d.between(26, 36), d);
+  c.scene.geometry.fibre_relief = 0.008;
+  c.scene.material.reflectance = OrenNayar{d.between(0.3, 0.6)};
+  colour(c, d.between(0.4, 0.65), d);
+}
+void drill(KindOfCloth& c, Draws& d) {
+  twill(c, d.between(24, 42), d);
+  c.scene.material.reflectance = OrenNayar{d.between(0.15, 0.6)};
+  colour(c, d.between(0.1, 0.6), d);
+}
+
+Reflectance any_reflectance(Draws& d) {
+  const double f0 = d.between(0.02, 0.06);
+  switch (d.below(12)) {
+    case 0:
+      return OrenNayar{d.between(0.1, 0.6)};
+    case 1:
+      return DisneyDiffuse{d.between(0.2, 0.9)};
+    case 2:
+      return MultipleScattering{d.between(0.1, 0.5)};
+    case 3:
+      return ggx(d.of_ratio(0.1, 0.5), f0);
+    case 4:
+      return drawn_out(d.between(0.2, 0.5), d.between(0.2, 0.7), {f0, f0, f0});
+    case 5:
+      return fuzz(d.between(0.3, 0.6), d.between(2, 12), {f0 / 2, f0 / 2, f0 / 2});
+    case 6: {
+      MixedGgx lobe;
+      lobe.alpha = d.between(0.12, 0.25);
+      lobe.second_alpha = d.between(0.35, 0.6);
+      lobe.f0 = {f0, f0, f0};
+      return lobe;
+    }
+    case 7: {
+      FibreCones lobe;
+      lobe.spread_deg = d.between(8, 18);
+      return lobe;
+    }
+    default:
+      return Lambert{};
+  }
+}
+void any_geometry(KindOfCloth& c, Draws& d) {
+  constexpr std::array kWeaves = {GeometryKind::kPlain, GeometryKind::kTwill, GeometryKind::kSatin};
+  const double wave_mm = d.of_ratio(1.6, 8);
+  switch (d.below(10)) {
+    case 0:
+      jersey(c, d);
+      break;
+    case 1:
+      c.scene.geometry.waves = {{wave_mm * d.between(0.02, 0.12), wave_mm, d.between(0, 180), 0}};
+      break;
+    default:
+      weave(c, kWeaves[static_cast<std::size_t>(d.below(3))], d.between(6, 50), d);
+  }
+  if (d.with(0.2)) c.scene.geometry.fibre_relief = d.between(0.003, 0.012);
+  if (d.with(0.15)) c.scene.geometry.waves = {{d.between(0.05, 0.3), d.between(4, 10), d.between(0, 180), 0}};
+}
+// Of no kind: whatever relief in whatever colours of whatever reflectance.
+void anything(KindOfCloth& c, Draws& d) {
+  any_geometry(c, d);
+  c.scene.material.reflectance = any_reflectance(d);
+  const GeometryKind kind = c.scene.geometry.kind;
+  const bool is_woven =
+      kind == GeometryKind::kPlain || kind == GeometryKind::kTwill || kind == GeometryKind::kSatin;
+  if (is_woven && d.with(0.35)) {
+    two_colours(c, d.of_ratio(0.02, 0.6), d.of_ratio(0.1, 0.8), d);
+    c.scene.material.stripe_yarns = d.below(6);
+  } else {
+    colour(c, d.of_ratio(0.01, 0.9), d);
+  }
+  if (d.with(0.25)) spread(c, d.between(0.1, 0.6), d.between(0.15, 0.5));
+  c.scene.effects.interreflection = d.with(0.9);
+  if (!d.with(0.2)) return;
+  const double period = d.of_ratio(1.5, 9);
+  MaterialSettings other = with(any_reflectance(d), tinted(d.of_ratio(0.02, 0.7), d));
+  if (d.with(0.25)) other = with(drawn_out(d.between(0.2, 0.4), 0.3, {0.8, 0.7, 0.5}), {0.004, 0.004, 0.004});
+  c.parts = {{other, d.with(0.5) ? stripes(period, 0, d.between(0.1, 0.6)) : dots(period, 0.35 * period)}};
+}
+
 struct Kind {
   const char* name;
   Make make;
@@ -353,6 +434,8 @@ constexpr std::array kKinds = {
     Kind{"felt", felt},
     Kind{"fibre silk", fibre_silk},
     Kind{"ball", ball},
+    Kind{"linen", linen},
+    Kind{"drill", drill},
 };
 
 // Every second kind is of the one set.
@@ -365,6 +448,8 @@ std::array<std::vector<std::string>, 2> names_by_set() {
 }  // namespace
 
 std::span<const std::string> names_of_kinds(KindSet set) {
+  static const std::vector<std::string> kAnything = {"anything"};
+  if (set == KindSet::kAnything) return kAnything;
   static const std::array<std::vector<std::string>, 2> kNames = names_by_set();
   return kNames[set == KindSet::kChosenOn ? 0 : 1];
 }
@@ -376,7 +461,7 @@ KindOfCloth draw_kind(const std::string& name, std::uint32_t seed) {
   all_effects(cloth.scene.effects);
   const auto* kind = std::ranges::find(kKinds, name, &Kind::name);
   Draws draws(seed * 64 + static_cast<std::uint32_t>(kind - kKinds.begin()));
-  kind->make(cloth, draws);
+  kind == kKinds.end() ? anything(cloth, draws) : kind->make(cloth, draws);
   cloth.scene.geometry.fibre_seed = seed;
   return cloth;
 }

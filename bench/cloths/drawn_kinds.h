@@ -26,12 +26,13 @@ struct KindOfCloth {
   std::vector<ClothPart> parts;  ///< a later one lies over an earlier one
 };
 
-/// Thresholds and weights are chosen on the first half of the kinds alone.
-enum class KindSet { kChosenOn, kHeldOut };
+/// Thresholds are chosen on the first half of the kinds alone, and weights learned from cloths of no kind.
+enum class KindSet { kChosenOn, kHeldOut, kAnything };
 
 std::span<const std::string> names_of_kinds(KindSet set);
 
-/// The kind of this name; other seeds draw another weave, other colours, lobes and lights.
+/// The kind of this name, else a cloth of no kind, of whatever relief, colours and reflectance; other seeds
+/// draw another weave, other colours, lobes and lights.
 KindOfCloth draw_kind(const std::string& name, std::uint32_t seed);
 
 }  // namespace weft::bench

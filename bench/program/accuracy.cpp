@@ -15,6 +15,7 @@
 #include "bench/accuracy/coverage.h"
 #include "bench/accuracy/photos.h"
 #include "bench/cloths/cloths.h"
+#include "bench/cloths/forecast.h"
 #include "bench/program/studies.h"
 #include "bench/sanity/frame_faults.h"
 #include "bench/sanity/sanity.h"
@@ -153,20 +154,41 @@ app::Run add_cloths(app::Options& options) {
     std::string set_name = "held-out";
   };
   const auto a = std::make_shared<Said>();
-  const Choice choice =
-      by_flag(options, {{"cloths",
-                         "",
-                         [a](const StudyOptions& o) {
-                           a->set = a->set_name == "tuning" ? KindSet::kChosenOn : KindSet::kHeldOut;
-                           return cloths_table(*a, o);
-                         },
-                         {.runs = 1}}});
-  add_set(options, a->set_name, "Kinds of cloth: those that methods are tuned on, or those held out");
+  const Choice choice = by_flag(options, {{"cloths",
+                                           "",
+                                           [a](const StudyOptions& o) {
+                                             a->set = a->set_name == "tuning"     ? KindSet::kChosenOn
+                                                      : a->set_name == "held-out" ? KindSet::kHeldOut
+                                                                                  : KindSet::kAnything;
+                                             return cloths_table(*a, o);
+                                           },
+                                           {.runs = 1}}});
+  options
+      .add("--set", &a->set_name,
+           "Kinds of cloth: those that thresholds are chosen on, those held out, or cloths of no kind")
+      .one_of({"tuning", "held-out", "anything"})
+      .shows_default();
   options.add("--kind", &a->kind, "One kind alone, such as \"white cotton\"");
   options.add("--method", &a->methods, "These levels alone: standard,reference").by_commas();
   options.add_flag("--sessions", &a->as_session, "Mosaics of a calibrated rig instead of loose photographs");
   options.add("--draws", &choice->options.runs, "Of a kind; 0 is 1").in_range(0, 1000);
   options.add("--seed", &choice->options.seed, "Of the first draw").shows_default();
+  options.add(
+      "--blocks", &a->blocks,
+      "File to which a line of JSON is added for each block of 64 x 64 pixels: what it showed, and its "
+      "error");
+  return run_of(choice);
+}
+
+app::Run add_forecast(app::Options& options) {
+  const auto a = std::make_shared<ForecastOptions>();
+  const Choice choice =
+      by_flag(options, {{"forecast", "", [a](const StudyOptions& o) { return forecast_table(*a, o); }}});
+  options.add("blocks", &a->held, "Files of weft bench cloths --blocks, whose errors are foretold")
+      .required();
+  options.add("--learn", &a->taught_on, "Learn from the blocks of these files: a.jsonl,b.jsonl").by_commas();
+  options.add("--weights", &a->weights, "File for what was learned: solver/uncertainty/forecast_weights.inc");
+  options.add("--seed", &choice->options.seed, "Of the networks' beginnings").shows_default();
   return run_of(choice);
 }
 
@@ -206,7 +228,12 @@ app::Verb explain_verb() {
 }
 
 app::Verb cloths_verb() {
-  return {"cloths", "Errors of thirty-five kinds of cloth against what reports say of them", add_cloths};
+  return {"cloths", "Errors of thirty-seven kinds of cloth against what reports say of them", add_cloths};
+}
+
+app::Verb forecast_verb() {
+  return {"forecast", "Errors that blocks of simulated cloths let one expect, by formulas and as learned",
+          add_forecast};
 }
 
 app::Verb sanity_verb() {

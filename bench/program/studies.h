@@ -39,6 +39,7 @@ app::Verb accuracy_verb();
 app::Verb explain_verb();
 app::Verb photos_verb();
 app::Verb cloths_verb();
+app::Verb forecast_verb();
 app::Verb sanity_verb();
 app::Verb frames_verb();
 app::Verb capture_verb();

@@ -247,6 +247,7 @@ std::vector<app::Verb> verbs() {
           explain_verb(),
           photos_verb(),
           cloths_verb(),
+          forecast_verb(),
           sanity_verb(),
           frames_verb(),
           {"height", "Error, time and memory from normals to heights", add_height},

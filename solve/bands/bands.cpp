@@ -165,6 +165,9 @@ class BandSolver {
     return out;
   }
 
+  std::vector<solver::BlockFacts> blocks() const {
+    return model_ ? model_->facts() : std::vector<solver::BlockFacts>();
+  }
   solver::SolveTally tally() const {
     solver::SolveTally sum;
     for (const solver::SolveTally& each : tallies_) sum += each;
@@ -176,7 +179,8 @@ class BandSolver {
     const Rect rows = {0, 0, band.x1, band.height()};
     const View<const float> albedo = photosites_ ? photosites_->rho() : maps.albedo.plane(1);
     model_->gather(band, {constant(crop(three(maps.normal), rows)), maps.residual.plane().crop(rows),
-                          maps.status.plane().crop(rows), albedo});
+                          maps.status.plane().crop(rows), albedo,
+                          photosites_ ? photosites_->sigma_normal_deg() : maps.sigma_normal_deg.plane()});
   }
 
   void add_model(Rect lagging, BandMaps& maps, MapBand& out) {
@@ -259,6 +263,7 @@ Result<double> solve_bands(const Photographs& photographs, const solver::Method&
   }
   if (Result<void> ok = handover.wait(); !ok) return std::move(ok).error();
   if (options.tally != nullptr) *options.tally += solver.tally();
+  if (options.blocks != nullptr) *options.blocks = solver.blocks();
   return handover.waited_seconds();
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/base/job_context.h"
 #include "core/base/result.h"
@@ -14,6 +15,7 @@
 #include "solve/photographs/photographs.h"
 #include "solver/left_out/block_choice.h"
 #include "solver/method.h"
+#include "solver/uncertainty/block_facts.h"
 #include "solver/uncertainty/model_sigma.h"
 
 namespace weft::solve {
@@ -44,10 +46,11 @@ inline constexpr TileOptions kSolveTile = {.width = 8192, .height = 4};
 using BandSink = std::function<Result<void>(const MapBand&)>;
 
 struct BandOptions {
-  LightCorrection* correction = nullptr;          ///< readings go through it, if there is one
-  solver::SolveTally* tally = nullptr;            ///< added to, if there is one
-  std::optional<solver::ModelTraits> model = {};  ///< of a solve whose sigma has the model's part
-  const solver::BlockChoice* robust = nullptr;    ///< where the method is the level robust, for that part
+  LightCorrection* correction = nullptr;              ///< readings go through it, if there is one
+  solver::SolveTally* tally = nullptr;                ///< added to, if there is one
+  std::optional<solver::ModelTraits> model = {};      ///< of a solve whose sigma has the model's part
+  const solver::BlockChoice* robust = nullptr;        ///< where the method is the level robust, for that part
+  std::vector<solver::BlockFacts>* blocks = nullptr;  ///< gets what blocks of 64 x 64 show of it, row by row
 };
 
 /// Solves photographs band by band: memory stays at a few hundred rows of maps whatever the size of the

@@ -61,9 +61,13 @@ class PatchJudge {
     const std::size_t turns = solver::turns_of(lights_);
     predicted_.assign(static_cast<std::size_t>(tile.width()) * lights_, kNaN);
     read_lights(input);
+    normals_.assign(static_cast<std::size_t>(tile.width()), {});
     for (std::size_t turn = 0; turn < turns; ++turn) predict(input, turn, turns);
     for (int x = 0; x < tile.width(); ++x) {
       const std::size_t pixel = first + static_cast<std::size_t>(x), at = pixel * lights_;
+      const std::vector<Vec3>& of_turns = normals_[static_cast<std::size_t>(x)];
+      if (of_turns.size() == turns)
+        into.turned_deg[pixel] = static_cast<float>(solver::jackknife_deg(of_turns));
       write(input, x, into.scale[pixel],
             {{&into.reading[at], lights_}, {&into.error[at], lights_}, {&into.noise[at], lights_}});
     }
@@ -115,6 +119,8 @@ class PatchJudge {
     variant_.method->solve(others, output_);
     for (int x = 0; x < tile.width(); ++x) {
       if (output_.status(x, 0) & kNoSolution) continue;
+      const auto& n = output_.normal;
+      normals_[static_cast<std::size_t>(x)].push_back({n[0](x, 0), n[1](x, 0), n[2](x, 0)});
       for (std::size_t k = turn; k < lights_; k += turns) {
         const bool hidden = std::isinf(used(k, x)) && used(k, x) < 0;
         const double sent =
@@ -175,6 +181,7 @@ class PatchJudge {
   std::vector<View<const float>> views_;
   std::vector<LightField::Light> light_;  // [x * lights + k], as the next
   std::vector<float> predicted_;
+  std::vector<std::vector<Vec3>> normals_;  // by pixel, of each turn
   std::vector<float> usable_;
   std::vector<Vec3> directions_;
   std::vector<double> variances_;
@@ -192,7 +199,8 @@ Result<solver::LeftOut> leave_out_lights(const Photographs& photographs, const S
   for (const solver::Patch& patch : patches) {
     first.push_back(first.back() + static_cast<std::size_t>(patch.pixels.pixels()));
   }
-  left_out.scale.assign(first.back(), kNaN);
+  for (std::vector<float>* values : {&left_out.scale, &left_out.turned_deg})
+    values->assign(first.back(), kNaN);
   for (std::vector<float>* values : {&left_out.reading, &left_out.error, &left_out.noise}) {
     values->assign(first.back() * left_out.lights, kNaN);
   }

@@ -55,6 +55,7 @@ void append(LeftOut& all, const LeftOut& more) {
   all.reading.insert(all.reading.end(), more.reading.begin(), more.reading.end());
   all.error.insert(all.error.end(), more.error.begin(), more.error.end());
   all.noise.insert(all.noise.end(), more.noise.begin(), more.noise.end());
+  all.turned_deg.insert(all.turned_deg.end(), more.turned_deg.begin(), more.turned_deg.end());
 }
 
 // `with` as errors of equal brightness. Noise stays what it was, and of errors no larger than the subtracted

@@ -136,6 +136,12 @@ double unit_of_fibre(const solver::MeasuredLobe& lobe) {
   return std::max(lobe.lobe.f0 / kFibreF0, lobe.median_albedo / solver::kBrightestCloth);
 }
 
+double misfit_of(const solver::MeasuredLobe& measured) {
+  if (measured.is_measured()) return measured.fit.chi2;
+  const auto& tried = measured.candidates;
+  return tried.empty() ? 1 : std::ranges::min_element(tried, {}, &solver::LobeCandidate::chi2)->chi2;
+}
+
 std::vector<solver::KnownLobe> lobes_of(const GlossFacts& facts) {
   std::vector<solver::KnownLobe> lobes;
   for (const solver::MeasuredLobe& measured : facts.lobes) {
@@ -199,6 +205,8 @@ Result<Gloss> Gloss::find(const Photographs& photographs, const solver::Method& 
   gloss.facts.lobes = std::move(measured->lobes);
   gloss.facts.unit = measured->unit;
   for (const solver::MeasuredLobe& lobe : gloss.facts.lobes)
+    gloss.facts.misfit = std::max(gloss.facts.misfit, misfit_of(lobe));
+  for (const solver::MeasuredLobe& lobe : gloss.facts.lobes)
     gloss.facts.f0_of_channels.push_back(f0_of_channels(lobe, photographs));
   gloss.facts.of_film_pair = photographs.parallel.has_value();
   gloss.facts.of_second_pose = photographs.second_pose.has_value();
@@ -210,8 +218,15 @@ Result<Gloss> Gloss::find(const Photographs& photographs, const solver::Method& 
   };
   Result<solver::BlockChoice> choice = choose_by_block(photographs, variant(base), variant(*glossy), context);
   if (!choice) return std::move(choice).error();
+  if (!(choice->share() > 0)) return gloss;
+  const CurlWitness curl = ask_curl(photographs, base, *glossy, *choice, context.threads);
+  if (curl.objects()) {
+    gloss.facts.against = curl;
+    for (solver::MeasuredLobe& lobe : gloss.facts.lobes) lobe.refusal = solver::LobeRefusal::kNothingFits;
+    return gloss;
+  }
   gloss.facts.share = choice->share();
-  if (gloss.facts.share > 0) gloss.choice_ = std::move(*choice);
+  gloss.choice_ = std::move(*choice);
   return gloss;
 }
 

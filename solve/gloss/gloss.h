@@ -8,6 +8,7 @@
 
 #include "core/base/job_context.h"
 #include "core/base/result.h"
+#include "solve/correction/surface_witness.h"
 #include "solve/photographs/photographs.h"
 #include "solver/left_out/block_choice.h"
 #include "solver/method.h"
@@ -23,7 +24,7 @@ solver::Sight sight_of(const Photographs& photographs);
 
 /// Lobes, and the unit that their readings and albedo are over: 1 where the albedo is absolute.
 struct MeasuredGloss {
-  std::vector<solver::MeasuredLobe> lobes;  ///< one or two; of a refused one Lambert's law holds
+  std::vector<solver::MeasuredLobe> lobes;  ///< one to three; of a refused one Lambert's law holds
   double unit = 1;
 };
 
@@ -45,7 +46,10 @@ struct F0OfChannels {
 
 /// What solving with lobes came to.
 struct GlossFacts : MeasuredGloss {
-  double share = 0;             ///< of the blocks of the frame that are solved with them
+  double share = 0;   ///< of the blocks of the frame that are solved with them
+  double misfit = 1;  ///< chi-square that the best lobe leaves, of the worst material; at least 1
+  /// Where left-out light is for the lobes and curl against them: they are not used, and not called measured.
+  std::optional<CurlWitness> against = {};
   double seconds = 0;           ///< that looking for them took, whatever the frame's size
   bool of_film_pair = false;    ///< they were sought in crossed and parallel photographs
   bool of_second_pose = false;  ///< and in a second pose of the cloth

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "core/base/job_context.h"
 #include "core/base/result.h"
 #include "core/image/tiles.h"
 #include "solve/bands/bands.h"
 #include "solve/bands/deblur.h"
+#include "solve/correction/surface_witness.h"
 #include "solve/gloss/gloss.h"
 #include "solve/levels/reference.h"
 #include "solve/levels/work.h"
@@ -29,10 +31,12 @@ struct FrameFacts {
   std::optional<std::array<double, 2>> lateral_corner_px = {};
   /// blocks: the share of them on which `robust` predicts left-out light better than `standard`.
   std::optional<double> robust_share = {};
-  std::optional<GlossFacts> gloss = {};          ///< lobe: of the readings that were solved
-  std::optional<ReferenceFacts> reference = {};  ///< gates and what follows them
+  std::optional<CurlWitness> against_robust = {};  ///< blocks: where curl overruled left-out light
+  std::optional<GlossFacts> gloss = {};            ///< lobe: of the readings that were solved
+  std::optional<ReferenceFacts> reference = {};    ///< gates and what follows them
   /// check, on patches that chose nothing; after a comparison on few rows of them (solve/correction).
   std::optional<solver::LeftOut> left_out = {};
+  std::vector<solver::BlockFacts> blocks = {};  ///< of 64 x 64 pixels, row by row
 };
 
 /// Solves a frame by the stages of a level or method (solve/levels/stages.h).

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solve/levels/stages.h"
 
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
+
+#include "core/base/statistics.h"
 
 #include "solve/bands/deblur.h"
 #include "solve/bands/realign.h"
@@ -49,6 +52,14 @@ Result<void> choose_blocks(Solving& s) {
   Result<solver::BlockChoice> choice =
       choose_by_block(s.photographs, {.method = s.method}, {.method = &robust}, s.context);
   if (!choice) return std::move(choice).error();
+  if (choice->share() > 0) {
+    const CurlWitness curl = ask_curl(s.photographs, *s.method, robust, *choice, s.context.threads);
+    if (curl.objects()) {
+      s.facts.robust_share = 0;
+      s.facts.against_robust = curl;
+      return {};
+    }
+  }
   s.facts.robust_share = choice->share();
   s.method = &s.keep(solver::blended_method(*s.method, robust, *choice));
   s.bands.robust = &s.keep(std::make_unique<solver::BlockChoice>(std::move(*choice)));
@@ -70,8 +81,26 @@ Result<void> find_lobe(Solving& s) {
   return {};
 }
 
+// What the stages before have found tells of the model's error.
+void add_traits(const FrameFacts& facts, solver::ModelTraits& traits) {
+  if (facts.gloss) {
+    traits.lobe_share = facts.gloss->share;
+    traits.lobe_misfit = facts.gloss->misfit;
+  }
+  if (!facts.left_out) return;
+  const solver::LeftOutError error = solver::error_of_all(*facts.left_out);
+  if (error.readings > 0 && error.noise_median > 0) traits.unpredicted = error.median / error.noise_median;
+  std::vector<double> turned;
+  for (const float deg : facts.left_out->turned_deg) {
+    if (std::isfinite(deg)) turned.push_back(static_cast<double>(deg));
+  }
+  if (!turned.empty()) traits.turned_deg = median(std::move(turned));
+}
+
 Result<void> solve_tiles(Solving& s) {
   s.bands.tally = &s.facts.tally;
+  s.bands.blocks = &s.facts.blocks;
+  if (s.bands.model) add_traits(s.facts, *s.bands.model);
   const Result<double> waited = solve_bands(s.photographs, *s.method, s.tile, s.context, s.sink, s.bands);
   if (!waited) return waited.error();
   s.facts.waited_seconds = *waited;
@@ -111,8 +140,8 @@ std::vector<Stage> stages_of(const solver::MethodName& method, const ReferenceOp
   from(Level::kReference, second_lobe_stage());
   from(Level::kReference, comparison_stage());
   from(Level::kReference, correction_stage());
-  from(Level::kPreview, solve_stage());
   from(Level::kPreview, check_stage());
+  from(Level::kPreview, solve_stage());
   return stages;
 }
 
@@ -120,7 +149,8 @@ Stage method_stage(const solver::MethodName& method) {
   return {method.name, method.help, {}, [method](Solving& s) -> Result<void> {
             s.method = &s.keep(method.make());
             s.bands.model = solver::ModelTraits{.is_half = method.extent == solver::Extent::kHalfSize,
-                                                .sigma_slope = s.photographs.sigma_slope};
+                                                .sigma_slope = s.photographs.sigma_slope,
+                                                .is_fast = method.level == solver::Level::kFast};
             return {};
           }};
 }

@@ -21,8 +21,8 @@ Stage sharpen_stage();
 Stage realign_stage();
 Stage blocks_stage();
 Stage lobe_stage();
-Stage solve_stage();
 Stage check_stage();
+Stage solve_stage();
 
 /// Those of the level reference (reference.h).
 Stage gates_stage();

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "solver/kernels/demosaic.h"
+#include "solver/uncertainty/expected_error.h"
 
 namespace weft::solve {
 namespace {
@@ -15,6 +16,8 @@ constexpr int kCell = 2;
 constexpr int kKept = solver::kDemosaicReach;
 // Columns of a block. Over so many the lights change by a percent.
 constexpr int kBlock = 64;
+// Every such row of a block is looked at: a multiple of the filter's period.
+constexpr int kRowsApart = 4;
 // Rows of bands that share what is known of the lights: a multiple of a band's.
 constexpr int kLightRows = 256;
 
@@ -175,6 +178,38 @@ void ModelPart::angles_of(int cell_y, int cell_rows, const SolvedRows& solved, C
   }
 }
 
+// What the formula says of a block is multiplied with what its facts make of that.
+void ModelPart::look_at_blocks(const SolvedRows& solved) {
+  const int width = solved.status.width(), height = solved.status.height();
+  // Of a mosaic's rows of even number, the greens.
+  const int from = planes_.channel_at(planes_.speaker(), 0, 0) == 1 || width < 2 ? 0 : 1;
+  const std::size_t first = facts_.size();
+  facts_.resize(first + blocks_.size());
+  parallel_for(blocks_.size(), threads_, [&](std::size_t i, int) {
+    const int x0 = static_cast<int>(i) * kBlock, columns = std::min(kBlock, width - x0);
+    const int x = x0 + (columns > from ? from : 0);
+    solver::BlockSums sums;
+    for (int y = 0; y < height; y += kRowsApart) {
+      const int below = std::min(y + 1, height - 1);
+      const auto at = [&](const auto& view, int row) { return view.row(row) + x; };
+      sums.add({{at(solved.normal[0], y), at(solved.normal[1], y), at(solved.normal[2], y)},
+                {at(solved.normal[0], below), at(solved.normal[1], below), at(solved.normal[2], below)},
+                at(solved.residual, y),
+                at(solved.albedo, y),
+                at(solved.sigma_normal_deg, y),
+                angles_.plane().row(kKept + y) + x,
+                at(solved.status, y)},
+               x0 + columns - x);
+    }
+    facts_[first + i] = sums.facts(traits_, blocks_[i].around.robust);
+    const float factor = solver::model_factor(facts_[first + i]);
+    for (int y = 0; y < height; ++y) {
+      float* angles = angles_.plane().row(kKept + y) + x0;
+      for (int j = 0; j < columns; ++j) angles[j] = std::min(factor * angles[j], solver::kUnknownAngleDeg);
+    }
+  });
+}
+
 void ModelPart::gather(Rect band, const SolvedRows& solved) {
   for (int j = 0; j < kKept && band.y0 > 0; ++j) {
     std::copy_n(angles_.plane().row(band.y0 - first_ - kKept + j), band.width(), angles_.plane().row(j));
@@ -194,6 +229,7 @@ void ModelPart::gather(Rect band, const SolvedRows& solved) {
     angles_of(static_cast<int>(i), static_cast<int>(cell_rows), solved,
               rows[static_cast<std::size_t>(worker)]);
   });
+  look_at_blocks(solved);
 }
 
 void ModelPart::fill(Rect rows, const std::array<View<const float>, 3>& albedo, View<float> model_normal_deg,

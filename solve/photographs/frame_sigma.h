@@ -8,6 +8,7 @@
 #include "solve/photographs/photographs.h"
 #include "solver/kernels/model_angles.h"
 #include "solver/left_out/block_choice.h"
+#include "solver/uncertainty/block_facts.h"
 
 namespace weft::solve {
 
@@ -16,7 +17,8 @@ struct SolvedRows {
   std::array<View<const float>, 3> normal;
   View<const float> residual;
   View<const std::uint16_t> status;
-  View<const float> albedo;  ///< of each photosite of a mosaic, or of green
+  View<const float> albedo;            ///< of each photosite of a mosaic, or of green
+  View<const float> sigma_normal_deg;  ///< by noise
 };
 
 /// The model's part of sigma (solver/kernels/model_angles.h) over a frame that is solved band by band: of
@@ -33,6 +35,9 @@ class ModelPart {
 
   /// Takes in the next band.
   void gather(Rect band, const SolvedRows& solved);
+
+  /// What the blocks of all bands so far showed, row by row.
+  const std::vector<solver::BlockFacts>& facts() const { return facts_; }
 
   /// Fills the angle for `rows` of the frame, in degrees, and the albedo's share of R, G, B. They begin
   /// solver::kDemosaicReach rows above the gathered band at most. All views are as large as `rows`.
@@ -58,6 +63,7 @@ class ModelPart {
   void sum_blocks(int cell_rows);
   void see_within(const SolvedRows& solved);
   void angles_of(int cell_y, int cell_rows, const SolvedRows& solved, CellRow& row);
+  void look_at_blocks(const SolvedRows& solved);
 
   const Photographs& photographs_;
   Planes planes_;
@@ -70,6 +76,7 @@ class ModelPart {
   Image<float> within2_;  ///< of a preview, over the band
   int first_ = 0;         ///< the frame's row that is the first of angles_
   std::vector<Block> blocks_;
+  std::vector<solver::BlockFacts> facts_;
 };
 
 }  // namespace weft::solve

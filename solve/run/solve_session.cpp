@@ -172,6 +172,7 @@ struct Made {
   PhotographsSummary summary;
   std::int64_t lost = 0;                        // pixels without a solution that have a saturated reading
   std::optional<ReflectanceFacts> reflectance;  // where a lobe was looked for
+  std::vector<solver::BlockFacts> blocks;
 };
 
 // A solve under way. Its steps hand on what they found; all of them fill in the document and the seconds.
@@ -208,7 +209,8 @@ class Run {
     if (Result<void> ok = describe(*made, prepared->fullness); !ok) return std::move(ok).error();
     if (Result<void> ok = publish(); !ok) return std::move(ok).error();
     seconds_.total = total.lap();
-    return SolveReport{product_.folder, false, std::move(facts_), made->maps.expected(), seconds_};
+    return SolveReport{product_.folder,       false,    std::move(facts_),
+                       made->maps.expected(), seconds_, made->blocks};
   }
 
  private:
@@ -325,6 +327,7 @@ class Run {
   void take_facts(const FrameFacts& frame, Made& made) {
     facts_.solved_by = facts_of(frame.tally);
     facts_.solved_by->robust_share = frame.robust_share;
+    made.blocks = frame.blocks;
     if (frame.deblur) facts_.sharpening = facts_of(*frame.deblur);
     if (frame.lateral_corner_px) facts_.lateral_color = {*frame.lateral_corner_px};
     if (frame.gloss) {
@@ -340,6 +343,9 @@ class Run {
   // What the photographs say of the rig and of themselves.
   Result<void> judge(const Prepared& prepared, const FrameFacts& frame, Made& made) {
     std::vector<std::string> warnings = prepared.warnings;
+    if (frame.against_robust) warnings.push_back(in_words(*frame.against_robust, "by a robust solve"));
+    if (frame.gloss && frame.gloss->against)
+      warnings.push_back(in_words(*frame.gloss->against, "with the lobe that fits best"));
     if (frame.reference) std::ranges::move(warnings_of(*frame.reference), std::back_inserter(warnings));
     PhotographsSummary& summary = made.summary;
     summary = summarize_photographs(prepared.photographs, prepared.numbers, warnings, context_);

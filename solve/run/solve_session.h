@@ -56,6 +56,8 @@ struct SolveReport {
   SolveFacts facts;
   ExpectedError expected;  ///< of this run: zero if was_there
   SolveSeconds seconds;    ///< of this run: zero if was_there
+  /// What blocks of 64 x 64 pixels showed, row by row, of this run: what an error is foretold by.
+  std::vector<solver::BlockFacts> blocks = {};
 };
 
 /// The id that solve_session() gives the solve of this plan.

@@ -171,6 +171,16 @@ Comparison compare(const LeftOut& a, const LeftOut& b) {
   return comparison;
 }
 
+double jackknife_deg(std::span<const Vec3> normals) {
+  if (normals.size() < 2) return kNaN;
+  const auto turns = static_cast<double>(normals.size());
+  Vec3 mean;
+  for (const Vec3& n : normals) mean = mean + (1 / turns) * n;
+  double square = 0;
+  for (const Vec3& n : normals) square += dot(n - mean, n - mean);
+  return degrees(std::sqrt((turns - 1) / turns * square));
+}
+
 LeftOutError error_of_light(const LeftOut& left_out, std::size_t light) {
   ErrorGatherer errors(left_out);
   errors.add_light(light);

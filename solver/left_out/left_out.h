@@ -30,6 +30,9 @@ struct LeftOut {
   std::vector<float> reading;  ///< as taken
   std::vector<float> error;    ///< reading less prediction
   std::vector<float> noise;    ///< sigma that noise alone gives the error; NaN where it is not known
+  /// By pixel: the jackknife's sigma of the normal, degrees, by how far it turns when a turn's lights are
+  /// left out; NaN where a turn has no solution.
+  std::vector<float> turned_deg;
 };
 
 /// Sigma of reading k less its prediction by the lights of other turns, from the noise of all: `directions`
@@ -73,5 +76,9 @@ struct LeftOutError {
 };
 LeftOutError error_of_light(const LeftOut& left_out, std::size_t light);
 LeftOutError error_of_all(const LeftOut& left_out);
+
+/// The jackknife's sigma of a normal of which each turn's solve is given: the root of (T - 1) / T times the
+/// sum of their squared distances from their mean, degrees (Efron, 1982). NaN of fewer than two.
+double jackknife_deg(std::span<const Vec3> normals);
 
 }  // namespace weft::solver

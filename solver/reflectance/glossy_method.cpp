@@ -315,7 +315,8 @@ class Glossy : public Method {
     const unsigned status = output.status(x, y);
     const double yarn = (status & kYarnAcross) != 0 ? kPi / 2 : 0;
     const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y) / unit_;
-    const Blend lobes = {lobes_.front().lobe, lobes_.back().lobe, second_share_of(status)};
+    const Blend lobes = {lobes_.front().lobe, lobes_[lobes_.size() < 2 ? 0 : 1].lobe,
+                         second_share_of(status)};
     const Vec3 n = {output.normal[0](x, y), output.normal[1](x, y), output.normal[2](x, y)};
     LitFrom from(light, readings.front().from.view, lobe_share);
     from.channel = input.planes == 1 ? readings.front().from.channel : 1;

@@ -23,8 +23,8 @@ struct KnownLobe {
 /// bits of the base, but for SPECULAR. Pixels that Lambert's law costs least, where it is among the lobes,
 /// stay as the base left them. A pixel that neither of two lobes explains is solved as a blend of both
 /// (blend.h), where that explains it; status_blend.h says their shares. Its sigmas are those of the readings
-/// and of what is open of its lobe, to first order. At most two lobes. `base` must outlive it.
-/// Readings are fitted over `unit`, as the lobes were; albedo is written as the base has it.
+/// and of what is open of its lobe, to first order. At most two lobes that shine, before Lambert's. `base`
+/// must outlive it. Readings are fitted over `unit`, as the lobes were; albedo is written as the base has it.
 std::unique_ptr<Method> glossy_method(const Method& base, std::vector<KnownLobe> lobes, Sight sight,
                                       double unit = 1);
 

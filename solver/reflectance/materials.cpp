@@ -22,6 +22,8 @@ constexpr int kMostRounds = 6;
 constexpr double kPromising = 0.7;
 const Lobe kSharp = {.family = LobeFamily::kGgx, .alpha = 0.15, .f0 = 0.05};
 const Lobe kBroad = {.family = LobeFamily::kGgx, .alpha = 0.45, .f0 = 0.05};
+// A pixel's status says of which of two lobes it is (GLOSSY, SECOND_LOBE), or of none.
+constexpr std::ptrdiff_t kMostShining = 2;
 // Pixels that may still change sides once it is settled.
 constexpr double kSettledShare = 0.01;
 
@@ -31,8 +33,8 @@ constexpr double kMostMixed = 0.35, kMixedFrom = 2;
 // Share of these that must be blends of both.
 constexpr double kLeastBlends = 0.7;
 
-using Sides = std::vector<std::uint8_t>;  // 0 or 1, or kNeither, by pixel
-constexpr std::uint8_t kNeither = 2;
+using Sides = std::vector<std::uint8_t>;  // which of the lobes, or kNeither, by pixel
+constexpr std::uint8_t kNeither = 255;
 
 // The best fit of the families that were tried; Lambert's law where it fits.
 const LobeCandidate& best_of(const MeasuredLobe& measured) {
@@ -64,9 +66,9 @@ Sides above_median(const std::vector<double>& values) {
   return sides;
 }
 
-// Pixels in two groups, each with a lobe.
+// Pixels in groups, each with a lobe.
 struct Split {
-  std::array<Lobe, 2> lobes;
+  std::vector<Lobe> lobes;
   Sides sides;
   double cost = std::numeric_limits<double>::infinity();
   std::vector<double> costs = {};  // by pixel
@@ -80,14 +82,17 @@ class Splitter {
   LobeFit fitted(const Lobe& lobe) const { return settled(samples_, start_, lobe, threads_); }
 
   // Each pixel goes where it costs less.
-  Split assigned(const std::array<Lobe, 2>& lobes) const {
-    const std::vector<double> a = fitted(lobes[0]).cost, b = fitted(lobes[1]).cost;
-    Split split = {lobes, Sides(a.size()), 0, std::vector<double>(a.size())};
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      split.sides[i] = b[i] < a[i] ? 1 : 0;
-      split.costs[i] = std::min(a[i], b[i]);
-      split.cost += split.costs[i];
+  Split assigned(const std::vector<Lobe>& lobes) const {
+    Split split = {lobes, Sides(start_.size()), 0, fitted(lobes.front()).cost};
+    for (std::uint8_t side = 1; side < lobes.size(); ++side) {
+      const std::vector<double> costs = fitted(lobes[side]).cost;
+      for (std::size_t i = 0; i < costs.size(); ++i) {
+        if (!(costs[i] < split.costs[i])) continue;
+        split.sides[i] = side;
+        split.costs[i] = costs[i];
+      }
     }
+    for (const double cost : split.costs) split.cost += cost;
     return split;
   }
 
@@ -117,14 +122,14 @@ class Splitter {
   }
 
   // Lobes and sides in turn, from a first guess, until hardly a pixel changes its side. None where it is
-  // promising no longer.
-  std::optional<Split> grown(Split split, double cost_of_all, bool trims = false) const {
+  // promising no longer over what fewer lobes cost.
+  std::optional<Split> grown(Split split, double cost_of_fewer, bool trims = false) const {
     for (int round = 0; round < kMostRounds; ++round) {
-      std::array<Lobe, 2> lobes;
-      for (std::uint8_t side = 0; side < 2; ++side) {
+      std::vector<Lobe> lobes;
+      for (std::uint8_t side = 0; side < split.lobes.size(); ++side) {
         const Group group = of(split.sides, side);
         if (group.start.size() < kLeastTrialPixels) return std::nullopt;
-        lobes[side] = lobe_of(group, split.lobes[side]);
+        lobes.push_back(lobe_of(group, split.lobes[side]));
       }
       Split next = assigned(lobes);
       if (trims) trim(next);
@@ -133,7 +138,7 @@ class Splitter {
       split = std::move(next);
       if (static_cast<double>(moved) < kSettledShare * static_cast<double>(split.sides.size())) break;
     }
-    if (!(split.cost < kPromising * cost_of_all)) return std::nullopt;
+    if (!(split.cost < kPromising * cost_of_fewer)) return std::nullopt;
     return split;
   }
 
@@ -185,18 +190,37 @@ class Splitter {
   int threads_;
 };
 
-// Both materials, the first measured; none where one of them is not explained.
-std::optional<std::vector<MeasuredLobe>> both_explained(const Splitter& all, const Sides& sides) {
-  std::array<MeasuredLobe, 2> two = {all.measured(sides, 0), {}};
-  if (!is_explained(two[0])) return std::nullopt;
-  two[1] = all.measured(sides, 1);
-  if (!is_explained(two[1])) return std::nullopt;
-  const std::ptrdiff_t of_first = std::ranges::count(sides, 0), of_second = std::ranges::count(sides, 1);
-  const bool second_first =
-      two[0].is_measured() == two[1].is_measured() ? of_second > of_first : two[1].is_measured();
-  if (second_first) std::swap(two[0], two[1]);
-  if (!two[0].is_measured()) return std::nullopt;
-  return std::vector<MeasuredLobe>(two.begin(), two.end());
+// The materials, those that are measured first, and of these the one with most pixels; none where one of them
+// is not explained, none is measured, or more are than a pixel can be told to be of.
+std::optional<std::vector<MeasuredLobe>> all_explained(const Splitter& all, const Split& split) {
+  struct Material {
+    MeasuredLobe measured;
+    std::ptrdiff_t pixels;
+  };
+  std::vector<Material> materials;
+  for (std::uint8_t side = 0; side < split.lobes.size(); ++side) {
+    materials.push_back({all.measured(split.sides, side), std::ranges::count(split.sides, side)});
+    if (!is_explained(materials.back().measured)) return std::nullopt;
+  }
+  std::ranges::stable_sort(materials, [](const Material& a, const Material& b) {
+    return std::pair(a.measured.is_measured(), a.pixels) > std::pair(b.measured.is_measured(), b.pixels);
+  });
+  const auto shining =
+      std::ranges::count_if(materials, [](const Material& m) { return m.measured.is_measured(); });
+  if (shining == 0 || shining > kMostShining) return std::nullopt;
+  std::vector<MeasuredLobe> lobes;
+  for (Material& material : materials) lobes.push_back(std::move(material.measured));
+  return lobes;
+}
+
+// From each of these first guesses, the one that comes to cost least.
+std::optional<Split> best_grown(const Splitter& trial, std::vector<Split> firsts, double cost_of_fewer) {
+  std::optional<Split> best;
+  for (Split& first : firsts) {
+    std::optional<Split> split = trial.grown(std::move(first), cost_of_fewer);
+    if (split && (!best || split->cost < best->cost)) best = std::move(split);
+  }
+  return best;
 }
 
 }  // namespace
@@ -218,28 +242,31 @@ std::vector<MeasuredLobe> measure_materials(const LobeSamples& samples, const st
   const double cost_of_all = trial.fitted(of_all).total();
   std::vector<double> brightness;
   for (const Vec3& b : few_start) brightness.push_back(length(b));
-  std::optional<Split> best;
-  const std::array<Lobe, 2> same = {of_all, of_all};
-  std::array<Split, 3> firsts = {{{same, above_median(trial.fitted({}).cost), cost_of_all},
-                                  {same, above_median(brightness), cost_of_all},
-                                  trial.assigned({kSharp, kBroad})}};
-  for (Split& first : firsts) {
-    std::optional<Split> split = trial.grown(std::move(first), cost_of_all);
-    if (split && (!best || split->cost < best->cost)) best = std::move(split);
-  }
+  const std::vector<Lobe> same = {of_all, of_all};
+  std::optional<Split> best = best_grown(trial,
+                                         {{same, above_median(trial.fitted({}).cost), cost_of_all},
+                                          {same, above_median(brightness), cost_of_all},
+                                          trial.assigned({kSharp, kBroad})},
+                                         cost_of_all);
   if (!best) return one;
   // What the trial pixels told must hold for all.
   const Splitter all(samples, start, threads);
-  if (auto two = both_explained(all, all.assigned(best->lobes).sides)) return std::move(*two);
+  // A third that is matt, beside two that shine.
+  const std::optional<Split> three = best_grown(
+      trial, {trial.assigned({kSharp, kBroad, {}}), trial.assigned({best->lobes[0], best->lobes[1], {}})},
+      best->cost);
+  if (three) {
+    if (auto lobes = all_explained(all, all.assigned(three->lobes))) return std::move(*lobes);
+  }
+  if (auto two = all_explained(all, all.assigned(best->lobes))) return std::move(*two);
   // Where they fade into each other pixels of both spoil either.
   trial.trim(*best);
   const std::optional<Split> soft = trial.grown(*best, cost_of_all, true);
   if (!soft) return one;
   Split whole = all.assigned(soft->lobes);
   all.trim(whole);
-  const Sides& sides = whole.sides;
-  std::optional<std::vector<MeasuredLobe>> two = both_explained(all, sides);
-  if (!two || !all.are_blends(sides, (*two)[0].lobe, (*two)[1].lobe)) return one;
+  std::optional<std::vector<MeasuredLobe>> two = all_explained(all, whole);
+  if (!two || !all.are_blends(whole.sides, (*two)[0].lobe, (*two)[1].lobe)) return one;
   return std::move(*two);
 }
 

@@ -46,7 +46,8 @@ double degrees_a_residual(const LightField& field, int x, int y) {
   const double det = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
   if (n < 4 || !(det > 0)) return 0;
   const double across = (yy * zz - yz * yz + xx * zz - xz * xz) / det;
-  return degrees(std::sqrt(across * n / (n - 3)));
+  const double copies = std::max(1.0, n / kIndependentLights);
+  return degrees(std::sqrt(copies * across * n / (n - 3)));
 }
 
 float within_pixel2(float step_before, float step_after) {

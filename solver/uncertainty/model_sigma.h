@@ -25,8 +25,10 @@ struct ResidualNoise {
 ResidualNoise residual_noise(const LightField& field, const NoiseModel& noise, int x, int y, int c);
 
 /// Degrees of rms angle for each unit of residual over the albedo, if misfits were independent: the root of
-/// N / (N - 3) tr(P G^-1 P), with G the sum of l l^T over the N lights and P across an upright normal. 0 with
-/// fewer than four lights, which fit anything.
+/// N / (N - 3) tr(P G^-1 P), with G the sum of l l^T over the N lights and P across an upright normal. Lights
+/// beyond kIndependentLights stand so near to others that what does not fit is the same: they make nothing
+/// surer. 0 with fewer than four lights, which fit anything.
+inline constexpr double kIndependentLights = 12;
 double degrees_a_residual(const LightField& field, int x, int y);
 
 /// How the normals were solved.
@@ -34,6 +36,11 @@ struct ModelTraits {
   bool bounces_are_out = false;  ///< light from the cloth was taken out of the readings
   bool is_half = false;          ///< at half the size, and without a shadow mask
   double sigma_slope = 0;        ///< all slopes may be off by this share of themselves
+  bool is_fast = false;          ///< without regard to shadows
+  double lobe_share = 0;         ///< of the frame's blocks, solved with a lobe
+  double lobe_misfit = 1;  ///< chi-square that the best lobe leaves of its readings; 1 where none was sought
+  double unpredicted = 1;  ///< error of left-out light over that of noise; 1 where that is not known
+  double turned_deg = 1;   ///< median of the jackknife's sigma of normals; 1 where it is not known
 };
 
 /// Square of the angle, in radians, that lies between the normal of a preview's pixel and those of the four

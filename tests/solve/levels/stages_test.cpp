@@ -80,7 +80,7 @@ TEST(Stages, OfALevelBeginWithItsMethodOrThatOfStandard) {
 
 TEST(Stages, OfAMethodAreThoseOfAQuickLevel) {
   EXPECT_THAT(names_of(stages_of(*solver::find_method("lts"))),
-              ElementsAre("lts", "sharpen", "realign", "solve", "check"));
+              ElementsAre("lts", "sharpen", "realign", "check", "solve"));
 }
 
 TEST(Stages, WithoutThoseOfALevelAreThoseOfTheLevelBelow) {

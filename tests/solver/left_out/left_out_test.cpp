@@ -37,6 +37,16 @@ LeftOut with_errors(float left, float right, unsigned seed) {
   return out;
 }
 
+// Of three, each a small angle a from their mean, all at 120 degrees from each other: sqrt(2/3 * 3 a^2).
+TEST(Jackknife, IsTheScatterOfTurnsTimesWhatTheyShare) {
+  constexpr double kTilt = 0.01;
+  std::vector<Vec3> normals;
+  for (const double turn : {0.0, 2 * kPi / 3, 4 * kPi / 3})
+    normals.push_back(normalized({kTilt * std::cos(turn), kTilt * std::sin(turn), 1}));
+  EXPECT_NEAR(jackknife_deg(normals), degrees(kTilt * std::sqrt(2.0)), 1e-3);
+  EXPECT_TRUE(std::isnan(jackknife_deg(std::span(normals).first(1))));
+}
+
 TEST(Patches, ThatChooseAndThatReportShareNoPixelAndAreEnoughOfTheFrame) {
   const std::vector<Patch> choose = patches_of(kFrame, PatchUse::kChoose),
                            report = patches_of(kFrame, PatchUse::kReport);

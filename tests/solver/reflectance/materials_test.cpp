@@ -60,6 +60,28 @@ TEST(Materials, AreTwoLobesWhereEachHalfHasItsOwn) {
   EXPECT_NEAR(found[1].lobe.f0, 0.06, 0.2 * 0.06);
 }
 
+TEST(Materials, AreThreeWhereAMattStripeLiesBetweenTwoThatShine) {
+  const Lobe wide = {.family = LobeFamily::kGgx, .alpha = 0.42, .f0 = 0.04},
+             narrow = {.family = LobeFamily::kGgx, .alpha = 0.22, .f0 = 0.05};
+  const std::array<PixelTruth, 3> stripes = {pixels_of(model_of(narrow), kOfEach, {.albedo = 0.08}, 21),
+                                             pixels_of(model_of(kMatt), kOfEach, {.albedo = 0.5}, 22),
+                                             pixels_of(model_of(wide), kOfEach, {.albedo = 0.3}, 23)};
+  PixelTruth cloth;
+  for (std::size_t i = 0; i < kOfEach; ++i) {
+    for (const PixelTruth& stripe : stripes) {
+      cloth.samples.add(stripe.samples.of(i));
+      cloth.start.push_back(stripe.start[i]);
+    }
+  }
+  std::vector<MeasuredLobe> found = measure_materials(cloth.samples, cloth.start, 0);
+  ASSERT_EQ(found.size(), 3U) << "the first: " << name_of(found.front().refusal);
+  ASSERT_TRUE(found[0].is_measured() && found[1].is_measured());
+  if (found[0].lobe.alpha > found[1].lobe.alpha) std::swap(found[0], found[1]);
+  EXPECT_NEAR(found[0].lobe.alpha, 0.22, 0.015);
+  EXPECT_NEAR(found[1].lobe.alpha, 0.42, 0.015);
+  EXPECT_EQ(found[2].refusal, LobeRefusal::kLambertFits) << name_of(found[2].refusal);
+}
+
 // Every third pixel is of both.
 TEST(Materials, ThatFadeIntoEachOtherAreTold) {
   PixelTruth cloth = both(model_of(kLustrous), model_of(kMatt), {.albedo = 0.1});

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/base/vec.h"
 #include "core/image/image.h"
+#include "core/rig/light_field.h"
 #include "core/solve/solve_record.h"
 
 namespace weft::solver {
@@ -32,6 +34,23 @@ TEST(WithinPixel, IsThatOfTheYarnBesideAPixelThatIsMixed) {
   const float beside = std::sqrt(within_pixel2(kStep, kStep - kFold / 2));
   EXPECT_NEAR(beside / (kStep / 4), 1.3, 0.3);
   EXPECT_FLOAT_EQ(within_pixel2(kStep, kStep - kFold / 2), within_pixel2(kStep - kFold / 2, kStep));
+}
+
+// Ten lights at an angle from upright, and the same copied.
+LightField ring_of(int copies) {
+  DistantLights lights;
+  for (int i = 0; i < 10 * copies; ++i) {
+    const double turn = 2 * kPi * (i % 10) / 10, tilt = radians(i % 2 == 0 ? 35 : 60);
+    lights.lights.push_back(
+        {{std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt)}, {1, 1, 1}});
+  }
+  return *LightField::make(lights, std::nullopt, {8, 8}, 0);
+}
+
+TEST(DegreesAResidual, AreNoFewerWhereLightsAreOnlyCopied) {
+  const double ten = degrees_a_residual(ring_of(1), 0, 0), hundred = degrees_a_residual(ring_of(10), 0, 0);
+  // N / (N - 3) aside, of 100 lights as many are independent as of 12.
+  EXPECT_NEAR(hundred / ten, std::sqrt(10.0 / 12 * (100.0 / 97) / (10.0 / 7)), 1e-6);
 }
 
 // A row of black cloth that leans by 30 degrees, so that nothing but misfits counts.
