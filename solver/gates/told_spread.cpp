@@ -30,7 +30,9 @@ struct Look {
 };
 constexpr std::array<Look, 3> kLooks = {{{0.1, 6.5}, {0.15, 3.0}, {0.3, 6.5, true}}};
 constexpr double kHardly = 5e-4;
-constexpr std::array kShares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
+constexpr std::array kShares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
+// No cloth spreads more: reflectance that departs from Lambert's law passes for it.
+constexpr double kMostShare = 0.75;
 constexpr std::array kMeans = {2.0, 3.0, 4.5, 6.5, 9.0};
 constexpr std::array<std::size_t, 2> kFirstMeans = {1, 3};  // that all shares are tried with
 constexpr double kLeastMean = 2.5;  // nearer, yarns of a few cells that are not resolved pass for spread
@@ -446,7 +448,9 @@ std::optional<ToldSpread> told_spread(std::span<const LambertWindow> windows, in
   const Trial none = cloth.tried(0, kMeans.front());
   if (!promises(cloth, none)) return {};
   const std::vector<Trial> trials = tried_around_the_best(cloth);
-  const ToldSpread told = mean_of(trials, none, *std::ranges::min_element(trials, {}, &Trial::sum));
+  const Trial& best = *std::ranges::min_element(trials, {}, &Trial::sum);
+  if (best.share > kMostShare) return {};
+  const ToldSpread told = mean_of(trials, none, best);
   return told.mean_cells > kLeastMean ? std::optional(told) : std::nullopt;
 }
 

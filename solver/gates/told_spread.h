@@ -37,8 +37,8 @@ struct ToldSpread {
 /// steps of log length from cell to cell, which the colours of yarns disturb at few cells; outliers count
 /// after Cauchy. None is returned where no trial is better than none by kLeastGain and by kLeastSure, where
 /// slopes lie in one direction, which tells nothing, where there are none, where they are so steep that
-/// yarns shade each other, and where light would leave within 2.5 cells, as yarns that are not resolved
-/// feign.
+/// yarns shade each other, where light would leave within 2.5 cells, as yarns that are not resolved
+/// feign, and where more than 0.75 of it would leave elsewhere, as reflectance beyond Lambert's law feigns.
 /// The result is the mean of trials, each weighed by how sure it is to be worse than the best. At most
 /// `threads` threads (0: all); the same bytes for any number of them.
 std::optional<ToldSpread> told_spread(std::span<const LambertWindow> windows, int threads);
