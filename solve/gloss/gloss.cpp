@@ -12,6 +12,8 @@
 #include "solve/correction/leave_out_lights.h"
 #include "solve/correction/light_correction.h"
 #include "solve/gloss/sample_gloss.h"
+#include "solve/photographs/diagnosis_pixels.h"
+#include "solver/diagnosis/highlights.h"
 #include "solver/reflectance/glossy_method.h"
 #include "solver/reflectance/lobe_tint.h"
 #include "solver/uncertainty/calibration_sigma.h"
@@ -210,6 +212,8 @@ Result<Gloss> Gloss::find(const Photographs& photographs, const solver::Method& 
     gloss.facts.f0_of_channels.push_back(f0_of_channels(lobe, photographs));
   gloss.facts.of_film_pair = photographs.parallel.has_value();
   gloss.facts.of_second_pose = photographs.second_pose.has_value();
+  if (gloss.facts.lobes.size() == 1 && is_like_metal(gloss.facts.lobes.front()))
+    gloss.facts.metal_share = solver::outshining_share(read_evidence(photographs));
   if (!gloss.facts.is_measured()) return gloss;
   const auto glossy =
       solver::glossy_method(gloss.beneath(base), lobes_of(gloss.facts), gloss.sight_, gloss.facts.unit);

@@ -48,6 +48,8 @@ struct F0OfChannels {
 struct GlossFacts : MeasuredGloss {
   double share = 0;   ///< of the blocks of the frame that are solved with them
   double misfit = 1;  ///< chi-square that the best lobe leaves, of the worst material; at least 1
+  /// Share of the cloth that outshines it where metal is among the readings (is_like_metal()); 0 elsewhere.
+  double metal_share = 0;
   /// Where left-out light is for the lobes and curl against them: they are not used, and not called measured.
   std::optional<CurlWitness> against = {};
   double seconds = 0;           ///< that looking for them took, whatever the frame's size

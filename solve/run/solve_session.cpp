@@ -344,6 +344,11 @@ class Run {
   Result<void> judge(const Prepared& prepared, const FrameFacts& frame, Made& made) {
     std::vector<std::string> warnings = prepared.warnings;
     if (frame.against_robust) warnings.push_back(in_words(*frame.against_robust, "by a robust solve"));
+    if (frame.gloss && frame.gloss->metal_share > 0)
+      warnings.push_back(
+          fmt::format("metal: not solved here. {:.0f} percent of the cloth mirrors as no fibre does, and its "
+                      "normals are those of a matt one",
+                      100 * frame.gloss->metal_share));
     if (frame.gloss && frame.gloss->against)
       warnings.push_back(in_words(*frame.gloss->against, "with the lobe that fits best"));
     if (frame.reference) std::ranges::move(warnings_of(*frame.reference), std::back_inserter(warnings));

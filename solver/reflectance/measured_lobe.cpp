@@ -482,6 +482,11 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   return measured;
 }
 
+bool is_like_metal(const MeasuredLobe& measured) {
+  if (measured.refusal != LobeRefusal::kNothingFits || measured.candidates.empty()) return false;
+  return std::ranges::min_element(measured.candidates, {}, &LobeCandidate::chi2)->lobe.f0 > kLeastF0OfMetal;
+}
+
 std::optional<MeasuredLobe> measure_two_lobes(const LobeSamples& samples, const std::vector<Vec3>& start,
                                               const MeasuredLobe& one, int threads) {
   if (one.refusal == LobeRefusal::kTooFewPixels || one.refusal == LobeRefusal::kLambertFits) return {};

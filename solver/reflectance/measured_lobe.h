@@ -108,6 +108,11 @@ inline constexpr double kLeastShare = 0.1, kLeastBroader = 1.5, kMostSigmaShare 
 MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads,
                           const std::array<double, 3>& tint = {1, 1, 1});
 
+/// Whether nothing explains the readings, and what comes nearest mirrors as no fibre does: metal is among
+/// them, of which a lobe over a diffuse part tells nothing.
+bool is_like_metal(const MeasuredLobe& measured);
+inline constexpr double kLeastF0OfMetal = 0.15;
+
 /// Two lobes in every point, where they save clearly more than what `one` has tried and both are told; `one`
 /// is what measure_lobe() made of the same pixels.
 std::optional<MeasuredLobe> measure_two_lobes(const LobeSamples& samples, const std::vector<Vec3>& start,

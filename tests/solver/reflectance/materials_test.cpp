@@ -111,6 +111,25 @@ TEST(Materials, ThatFadeIntoEachOtherAreTold) {
   EXPECT_EQ(found[1].refusal, LobeRefusal::kLambertFits) << name_of(found[1].refusal);
 }
 
+TEST(Materials, AreLikeMetalWhereAThirdOfThePixelsMirrorsAsNoFibreDoes) {
+  const Lobe metal = {.family = LobeFamily::kGgx, .alpha = 0.3, .f0 = 0.75};
+  const PixelTruth yarn = pixels_of(model_of(metal), kOfEach / 2, {.albedo = 0.004}, 31),
+                   ground = pixels_of(model_of(kMatt), kOfEach, {.albedo = 0.2}, 32);
+  PixelTruth cloth;
+  for (std::size_t i = 0; i < kOfEach; ++i) {
+    cloth.samples.add(ground.samples.of(i));
+    cloth.start.push_back(ground.start[i]);
+    if (i % 2 == 0) continue;
+    cloth.samples.add(yarn.samples.of(i / 2));
+    cloth.start.push_back(yarn.start[i / 2]);
+  }
+  const std::vector<MeasuredLobe> found = measure_materials(cloth.samples, cloth.start, 0);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(is_like_metal(found.front())) << name_of(found.front().refusal);
+  const PixelTruth satin = pixels_of(model_of(kLustrous), kOfEach, {.albedo = 0.2}, 33);
+  EXPECT_FALSE(is_like_metal(measure_materials(satin.samples, satin.start, 0).front()));
+}
+
 TEST(Materials, AreNotMadeOfWhatNoLobeExplains) {
   // Light between yarns: a share of what the darkest side of a pixel gets.
   const PixelModel model = [](Vec3 n, double albedo, double yarn, const LitFrom& from) {
