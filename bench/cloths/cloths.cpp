@@ -100,6 +100,7 @@ Result<void> add_levels(const KindOfCloth& cloth, std::uint32_t seed, const Clot
     options.method = level.name;
     options.output = scratch / level.name;
     options.previews = false;
+    options.looks_at_blocks = !asked.blocks.empty();
     const Result<solve::SolveReport> solved = solve(options);
     if (solved && !asked.blocks.empty()) {
       const Result<void> ok =

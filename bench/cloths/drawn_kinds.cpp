@@ -372,7 +372,7 @@ void any_geometry(KindOfCloth& c, Draws& d) {
   if (d.with(0.2)) c.scene.geometry.fibre_relief = d.between(0.003, 0.012);
   if (d.with(0.15)) c.scene.geometry.waves = {{d.between(0.05, 0.3), d.between(4, 10), d.between(0, 180), 0}};
 }
-// Of no kind: whatever relief in whatever colours of whatever reflectance.
+// A cloth of no kind: whatever relief in whatever colours of whatever reflectance.
 void anything(KindOfCloth& c, Draws& d) {
   any_geometry(c, d);
   c.scene.material.reflectance = any_reflectance(d);

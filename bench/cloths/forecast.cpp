@@ -10,19 +10,18 @@
 #include <utility>
 
 #include "bench/sanity/drawn_cloth.h"
-#include "core/base/files.h"
 #include "solver/uncertainty/model_sigma.h"
 
 namespace weft::bench {
 namespace {
 
 using Eigen::ArrayXd, Eigen::ArrayXXd, Eigen::MatrixXd, Eigen::VectorXd;
-using solver::Forecast, solver::kBlockFacts;
+using solver::kBlockFacts;
 
-constexpr std::size_t kNetworks = 4, kNeurons = Forecast::kHidden / kNetworks;
+constexpr std::size_t kNetworks = 4, kNeurons = ErrorNetwork::kHidden / kNetworks;
 constexpr int kSteps = 1500;
 constexpr double kRate = 0.01, kDecay = 1e-3, kMostMisfit = 0.7, kLeastScatter = 0.05;
-constexpr double kLeastError_deg = 1e-3;
+constexpr double kLeastError_deg = 1e-3, kLeastFactor = 0.2, kMostFactor = 12;
 constexpr auto kInputs = static_cast<Eigen::Index>(kBlockFacts);
 
 // Blocks in columns: facts over their scatter and a one, and what they are to come to.
@@ -110,14 +109,14 @@ Network learn(const Lesson& lesson, std::uint32_t seed) {
   return {hidden.value, sum.value.col(0)};
 }
 
-// Of one solve: what it erred by in the mean, over what was foretold.
+// What one solve erred by in the mean, over what was foretold.
 struct Told {
   std::string quality;
   double error = 0, by_formula = 0, by_learned = 0;
 };
 
 double foretold(const BlockError& block, double log_factor) {
-  const double factor = std::clamp(std::exp(log_factor), solver::kLeastFactor, solver::kMostFactor);
+  const double factor = std::clamp(std::exp(log_factor), kLeastFactor, kMostFactor);
   const double model = factor * std::exp(static_cast<double>(block.facts[solver::kLogModel]));
   return solver::kMeanOfRms * std::sqrt(model * model + block.other2);
 }
@@ -143,19 +142,6 @@ Json row_of(const std::string& quality, const std::vector<Told>& solves) {
   return row;
 }
 
-template <typename Numbers>
-std::string braced(const Numbers& numbers) {
-  return fmt::format("{{{:.6g}}}", fmt::join(numbers, ", "));
-}
-
-// As expected_error.cpp includes them.
-std::string source_of(const Forecast& forecast) {
-  std::string text = "// Learned, by `weft bench forecast --weights`.\n" + braced(forecast.mean) + ",\n" +
-                     braced(forecast.scatter) + ",\n{{\n";
-  for (const auto& neuron : forecast.hidden) text += braced(neuron) + ",\n";
-  return text + "}},\n" + braced(forecast.sum) + "\n";
-}
-
 Result<std::vector<BlockError>> read_all(const std::vector<std::filesystem::path>& files) {
   std::vector<BlockError> all;
   for (const std::filesystem::path& file : files) {
@@ -168,9 +154,9 @@ Result<std::vector<BlockError>> read_all(const std::vector<std::filesystem::path
 
 }  // namespace
 
-solver::Forecast teach(const std::vector<BlockError>& blocks, std::uint64_t seed) {
+ErrorNetwork teach(const std::vector<BlockError>& blocks, std::uint64_t seed) {
   const Lesson lesson = lesson_of(blocks);
-  Forecast forecast;
+  ErrorNetwork forecast;
   for (std::size_t f = 0; f < kBlockFacts; ++f) {
     forecast.mean[f] = lesson.mean(static_cast<Eigen::Index>(f));
     forecast.scatter[f] = lesson.scatter(static_cast<Eigen::Index>(f));
@@ -183,7 +169,8 @@ solver::Forecast teach(const std::vector<BlockError>& blocks, std::uint64_t seed
         forecast.hidden[i * kNeurons + neuron][f] = network.hidden(row, static_cast<Eigen::Index>(f));
       forecast.sum[i * kNeurons + neuron] = network.sum(row) / static_cast<double>(kNetworks);
     }
-    forecast.sum[Forecast::kHidden] += network.sum(network.sum.size() - 1) / static_cast<double>(kNetworks);
+    forecast.sum[ErrorNetwork::kHidden] +=
+        network.sum(network.sum.size() - 1) / static_cast<double>(kNetworks);
   }
   return forecast;
 }
@@ -192,17 +179,14 @@ Result<Rows> forecast_table(const ForecastOptions& asked, const StudyOptions& op
   const Result<std::vector<BlockError>> lessons = read_all(asked.taught_on), held = read_all(asked.held);
   if (!lessons) return lessons.error();
   if (!held) return held.error();
-  const Forecast forecast = lessons->empty() ? solver::forecast() : teach(*lessons, options.seed);
-  if (!asked.weights.empty()) {
-    if (Result<void> ok = write_file(asked.weights, source_of(forecast)); !ok) return std::move(ok).error();
-  }
+  const ErrorNetwork learned = teach(*lessons, options.seed);
   std::map<std::string, Told> solves;
   for (const BlockError& block : *held) {
     Told& told = solves[block.solve];
     told.quality = block.quality;
     told.error += block.pixels * block.error_deg;
     told.by_formula += block.pixels * foretold(block, 0);
-    told.by_learned += block.pixels * foretold(block, forecast.log_factor(block.facts));
+    told.by_learned += block.pixels * foretold(block, learned.log_factor(block.facts));
   }
   Rows rows;
   for (const solver::MethodName& level : solver::method_names()) {

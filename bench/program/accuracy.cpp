@@ -186,8 +186,9 @@ app::Run add_forecast(app::Options& options) {
       by_flag(options, {{"forecast", "", [a](const StudyOptions& o) { return forecast_table(*a, o); }}});
   options.add("blocks", &a->held, "Files of weft bench cloths --blocks, whose errors are foretold")
       .required();
-  options.add("--learn", &a->taught_on, "Learn from the blocks of these files: a.jsonl,b.jsonl").by_commas();
-  options.add("--weights", &a->weights, "File for what was learned: solver/uncertainty/forecast_weights.inc");
+  options.add("--learn", &a->taught_on, "Learn from the blocks of these files: a.jsonl,b.jsonl")
+      .by_commas()
+      .required();
   options.add("--seed", &choice->options.seed, "Of the networks' beginnings").shows_default();
   return run_of(choice);
 }

@@ -42,6 +42,6 @@ inline constexpr std::array<StatusName, 11> kStatusNames = {{{kSaturated, "SATUR
                                                              {kSecondLobe, "SECOND_LOBE"}}};
 
 /// Raised whenever the bytes of an output may change.
-inline constexpr int kSolverVersion = 15;
+inline constexpr int kSolverVersion = 16;
 
 }  // namespace weft

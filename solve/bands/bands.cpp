@@ -127,7 +127,9 @@ class BandSolver {
       readers_.emplace_back(photographs, tile, method.wants_rgb() ? ReadAs::kRgb : ReadAs::kTaken);
     }
     if (readers_.front().planes().count == 1) photosites_.emplace(photographs.size.width);
-    if (options.model) model_.emplace(photographs, kBandRows, *options.model, options.robust, tile_.threads);
+    if (options.model)
+      model_.emplace(photographs, kBandRows, *options.model, options.robust, tile_.threads,
+                     options.blocks != nullptr);
   }
 
   Result<MapBand> solve(Rect band, BandMaps& maps) {

@@ -23,7 +23,7 @@ struct CurlWitness {
 };
 inline constexpr double kMostRise = 0.03;
 
-/// Of readings as they were taken. `choice`: where the better one stands.
+/// Readings are as they were taken. `choice`: where the better one stands.
 CurlWitness ask_curl(const Photographs& photographs, const solver::Method& base, const solver::Method& better,
                      const solver::BlockChoice& choice, int threads);
 

@@ -62,13 +62,15 @@ CameraModel half_camera(CameraModel camera, Size size) {
 }  // namespace
 
 Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::MethodName& method,
-                               const TileOptions& tile, const JobContext& context, const BandSink& sink) {
-  return solve_by(stages_of(method), photographs, tile, context, sink);
+                               const TileOptions& tile, const JobContext& context, const BandSink& sink,
+                               bool looks_at_blocks) {
+  return solve_by(stages_of(method), photographs, tile, context, sink, looks_at_blocks);
 }
 
 Result<FrameFacts> solve_by(std::span<const Stage> stages, const Photographs& photographs,
-                            const TileOptions& tile, const JobContext& context, const BandSink& sink) {
-  Solving solving = {photographs, tile, context, sink};
+                            const TileOptions& tile, const JobContext& context, const BandSink& sink,
+                            bool looks_at_blocks) {
+  Solving solving = {photographs, tile, context, sink, looks_at_blocks};
   FrameFacts& facts = solving.facts;
   Stopwatch watch;
   for (const Stage& stage : stages) {

@@ -36,12 +36,13 @@ struct FrameFacts {
   std::optional<ReferenceFacts> reference = {};    ///< gates and what follows them
   /// check, on patches that chose nothing; after a comparison on few rows of them (solve/correction).
   std::optional<solver::LeftOut> left_out = {};
-  std::vector<solver::BlockFacts> blocks = {};  ///< of 64 x 64 pixels, row by row
+  std::vector<solver::BlockFacts> blocks = {};  ///< of 64 x 64 pixels, row by row, where they are wanted
 };
 
 /// Solves a frame by the stages of a level or method (solve/levels/stages.h).
 Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::MethodName& method,
-                               const TileOptions& tile, const JobContext& context, const BandSink& sink);
+                               const TileOptions& tile, const JobContext& context, const BandSink& sink,
+                               bool looks_at_blocks = false);
 
 /// Photographs of half the size for a quick look: each 2 x 2 cell of a mosaic is one pixel with a red, the
 /// mean green and a blue reading, or the mean of four pixels of RGB. A reading of which any part cannot be

@@ -30,7 +30,8 @@ struct Solving {
   const Photographs& photographs;
   const TileOptions& tile;
   const JobContext& context;
-  BandSink sink;  ///< takes the bands of the solve
+  BandSink sink;                 ///< takes the bands of the solve
+  bool looks_at_blocks = false;  ///< FrameFacts::blocks is wanted
   FrameFacts facts = {};
 
   const solver::Method* method = nullptr;   ///< by which the frame is solved
@@ -73,7 +74,8 @@ struct Stage {
 
 /// Solves a frame by a list that begins with a method's stage (stages.h).
 Result<FrameFacts> solve_by(std::span<const Stage> stages, const Photographs& photographs,
-                            const TileOptions& tile, const JobContext& context, const BandSink& sink);
+                            const TileOptions& tile, const JobContext& context, const BandSink& sink,
+                            bool looks_at_blocks = false);
 
 /// The list without the stages of this name.
 std::vector<Stage> without(std::string_view name, std::vector<Stage> stages);

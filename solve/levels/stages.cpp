@@ -99,7 +99,7 @@ void add_traits(const FrameFacts& facts, solver::ModelTraits& traits) {
 
 Result<void> solve_tiles(Solving& s) {
   s.bands.tally = &s.facts.tally;
-  s.bands.blocks = &s.facts.blocks;
+  if (s.looks_at_blocks) s.bands.blocks = &s.facts.blocks;
   if (s.bands.model) add_traits(s.facts, *s.bands.model);
   const Result<double> waited = solve_bands(s.photographs, *s.method, s.tile, s.context, s.sink, s.bands);
   if (!waited) return waited.error();

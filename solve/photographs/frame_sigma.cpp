@@ -6,7 +6,6 @@
 
 #include "core/base/parallel.h"
 #include "solver/kernels/demosaic.h"
-#include "solver/uncertainty/expected_error.h"
 
 namespace weft::solve {
 namespace {
@@ -46,13 +45,14 @@ ModelPart::CellRow::CellRow(int cells)
     : sums({cells + 2, 1}, static_cast<int>(solver::kCellFacts)), means({kCell * cells, 1}, 2) {}
 
 ModelPart::ModelPart(const Photographs& photographs, int band_rows, const solver::ModelTraits& traits,
-                     const solver::BlockChoice* robust, int threads)
+                     const solver::BlockChoice* robust, int threads, bool looks_at_blocks)
     : photographs_(photographs),
       planes_(photographs.planes()),
       has_noise_(photographs.noise().has_value()),
       traits_(traits),
       robust_(robust),
       threads_(threads),
+      looks_at_blocks_(looks_at_blocks),
       cells_({static_cast<int>(cells_of(photographs.size.width)) + 2, static_cast<int>(cells_of(band_rows))},
              static_cast<int>(solver::kCellFacts)),
       angles_({photographs.size.width, kKept + band_rows}) {
@@ -178,10 +178,9 @@ void ModelPart::angles_of(int cell_y, int cell_rows, const SolvedRows& solved, C
   }
 }
 
-// What the formula says of a block is multiplied with what its facts make of that.
 void ModelPart::look_at_blocks(const SolvedRows& solved) {
   const int width = solved.status.width(), height = solved.status.height();
-  // Of a mosaic's rows of even number, the greens.
+  // The greens, in a mosaic's rows of even number.
   const int from = planes_.channel_at(planes_.speaker(), 0, 0) == 1 || width < 2 ? 0 : 1;
   const std::size_t first = facts_.size();
   facts_.resize(first + blocks_.size());
@@ -202,11 +201,6 @@ void ModelPart::look_at_blocks(const SolvedRows& solved) {
                x0 + columns - x);
     }
     facts_[first + i] = sums.facts(traits_, blocks_[i].around.robust);
-    const float factor = solver::model_factor(facts_[first + i]);
-    for (int y = 0; y < height; ++y) {
-      float* angles = angles_.plane().row(kKept + y) + x0;
-      for (int j = 0; j < columns; ++j) angles[j] = std::min(factor * angles[j], solver::kUnknownAngleDeg);
-    }
   });
 }
 
@@ -229,7 +223,7 @@ void ModelPart::gather(Rect band, const SolvedRows& solved) {
     angles_of(static_cast<int>(i), static_cast<int>(cell_rows), solved,
               rows[static_cast<std::size_t>(worker)]);
   });
-  look_at_blocks(solved);
+  if (looks_at_blocks_) look_at_blocks(solved);
 }
 
 void ModelPart::fill(Rect rows, const std::array<View<const float>, 3>& albedo, View<float> model_normal_deg,

@@ -31,12 +31,12 @@ class ModelPart {
   /// where the level robust solved; null: nowhere. It and `photographs` must outlive this; photographs of a
   /// preview are RGB.
   ModelPart(const Photographs& photographs, int band_rows, const solver::ModelTraits& traits,
-            const solver::BlockChoice* robust, int threads);
+            const solver::BlockChoice* robust, int threads, bool looks_at_blocks = false);
 
   /// Takes in the next band.
   void gather(Rect band, const SolvedRows& solved);
 
-  /// What the blocks of all bands so far showed, row by row.
+  /// What the blocks of all bands so far showed, row by row; empty unless they are looked at.
   const std::vector<solver::BlockFacts>& facts() const { return facts_; }
 
   /// Fills the angle for `rows` of the frame, in degrees, and the albedo's share of R, G, B. They begin
@@ -71,6 +71,7 @@ class ModelPart {
   solver::ModelTraits traits_;
   const solver::BlockChoice* robust_;
   int threads_;
+  bool looks_at_blocks_;
   Image<float> cells_;    ///< a plane a solver::CellFact over the band, with an empty cell before each row
   Image<float> angles_;   ///< the last rows of the band before, then those of the band
   Image<float> within2_;  ///< of a preview, over the band

@@ -314,7 +314,8 @@ class Run {
       if (options_.previews) made.pictures.add(band.maps);
       return files.write(band.maps, band.sigma);
     };
-    Result<FrameFacts> frame = solve_frame(photographs, method_, options_.tile, context_, keep);
+    Result<FrameFacts> frame =
+        solve_frame(photographs, method_, options_.tile, context_, keep, options_.looks_at_blocks);
     if (!frame) return frame;
     seconds_.work = frame->work;
     seconds_.solve = watch_.lap() - frame->waited_seconds;

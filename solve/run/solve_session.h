@@ -35,7 +35,8 @@ struct SolveOptions {
   std::string plan = {};
   std::optional<double> cloth_spread = {};  ///< share, as of SolvePlan::cloth_spread; none: nobody said it
   double spread_distance_mm = solver::ClothSpread().mean_mm;  ///< that the share goes, in the mean
-  bool condition = false;  ///< also writes condition.exr (solve/files/condition_map.h)
+  bool condition = false;        ///< also writes condition.exr (solve/files/condition_map.h)
+  bool looks_at_blocks = false;  ///< SolveReport::blocks is wanted. No part of the id
   /// What was said of it before: solve.json keeps it beside what was taken. No part of the id.
   std::optional<SolvePrice> foretold = {};
 };
@@ -56,7 +57,7 @@ struct SolveReport {
   SolveFacts facts;
   ExpectedError expected;  ///< of this run: zero if was_there
   SolveSeconds seconds;    ///< of this run: zero if was_there
-  /// What blocks of 64 x 64 pixels showed, row by row, of this run: what an error is foretold by.
+  /// What blocks of 64 x 64 pixels showed, row by row, of this run, where they are wanted.
   std::vector<solver::BlockFacts> blocks = {};
 };
 

@@ -483,8 +483,8 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
 }
 
 bool is_like_metal(const MeasuredLobe& measured) {
-  if (measured.refusal != LobeRefusal::kNothingFits || measured.candidates.empty()) return false;
-  return std::ranges::min_element(measured.candidates, {}, &LobeCandidate::chi2)->lobe.f0 > kLeastF0OfMetal;
+  const auto is_strong = [](const LobeCandidate& each) { return each.lobe.f0 > kLeastF0OfMetal; };
+  return measured.refusal == LobeRefusal::kNothingFits && std::ranges::any_of(measured.candidates, is_strong);
 }
 
 std::optional<MeasuredLobe> measure_two_lobes(const LobeSamples& samples, const std::vector<Vec3>& start,

@@ -108,8 +108,8 @@ inline constexpr double kLeastShare = 0.1, kLeastBroader = 1.5, kMostSigmaShare 
 MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads,
                           const std::array<double, 3>& tint = {1, 1, 1});
 
-/// Whether nothing explains the readings, and what comes nearest mirrors as no fibre does: metal is among
-/// them, of which a lobe over a diffuse part tells nothing.
+/// Whether nothing explains the readings, and a family that was tried mirrors as no fibre does: metal is
+/// among them, of which a lobe over a diffuse part tells nothing.
 bool is_like_metal(const MeasuredLobe& measured);
 inline constexpr double kLeastF0OfMetal = 0.15;
 

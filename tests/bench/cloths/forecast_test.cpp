@@ -31,7 +31,7 @@ std::vector<BlockError> drawn_blocks(std::uint32_t seed, int count) {
 }
 
 TEST(ForecastOfBlocks, LearnsAFactorThatAFactTells) {
-  const solver::Forecast learned = teach(drawn_blocks(1, 400), 1);
+  const ErrorNetwork learned = teach(drawn_blocks(1, 400), 1);
   double square = 0;
   const std::vector<BlockError> others = drawn_blocks(2, 100);
   for (const BlockError& block : others) {
@@ -39,6 +39,20 @@ TEST(ForecastOfBlocks, LearnsAFactorThatAFactTells) {
     square += std::pow(learned.log_factor(block.facts) - truth, 2);
   }
   EXPECT_LT(std::sqrt(square / 100), 0.1) << "of factors between exp(-0.5) and exp(0.5)";
+}
+
+TEST(ErrorNetwork, IsASumOfNeuronsOverScatter) {
+  ErrorNetwork one;
+  one.scatter.fill(1);
+  one.mean[solver::kSlope] = 0.2;
+  one.scatter[solver::kSlope] = 0.1;
+  one.hidden[3][solver::kSlope] = 0.5;
+  one.hidden[3][solver::kBlockFacts] = -0.25;
+  one.sum[3] = 2;
+  one.sum[ErrorNetwork::kHidden] = 0.1;
+  solver::BlockFacts facts = {};
+  facts[solver::kSlope] = 0.4F;
+  EXPECT_NEAR(one.log_factor(facts), 0.1 + 2 * std::tanh(0.5 * 2 - 0.25), 1e-6);
 }
 
 TEST(ForecastOfBlocks, IsTheSameForTheSameBlocksAndSeed) {

@@ -37,7 +37,7 @@ LeftOut with_errors(float left, float right, unsigned seed) {
   return out;
 }
 
-// Of three, each a small angle a from their mean, all at 120 degrees from each other: sqrt(2/3 * 3 a^2).
+// Three normals at a small angle a from their mean, 120 degrees apart: sqrt(2/3 * 3 a^2).
 TEST(Jackknife, IsTheScatterOfTurnsTimesWhatTheyShare) {
   constexpr double kTilt = 0.01;
   std::vector<Vec3> normals;

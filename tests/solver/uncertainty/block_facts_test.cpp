@@ -9,7 +9,6 @@
 #include "core/base/vec.h"
 #include "core/image/image.h"
 #include "core/solve/solve_record.h"
-#include "solver/uncertainty/expected_error.h"
 
 namespace weft::solver {
 namespace {
@@ -106,30 +105,6 @@ TEST(BlockFacts, AreNumbersWhereNothingIsSolved) {
     for (int x = 0; x < kSide; ++x) block.status(x, y) = kNoSolution;
   }
   for (const float fact : block.facts()) EXPECT_TRUE(std::isfinite(fact)) << fact;
-}
-
-TEST(Forecast, IsASumOfNeuronsOverScatter) {
-  Forecast one;
-  one.scatter.fill(1);
-  one.mean[kSlope] = 0.2;
-  one.scatter[kSlope] = 0.1;
-  one.hidden[3][kSlope] = 0.5;
-  one.hidden[3][kBlockFacts] = -0.25;
-  one.sum[3] = 2;
-  one.sum[Forecast::kHidden] = 0.1;
-  BlockFacts facts = {};
-  facts[kSlope] = 0.4F;
-  EXPECT_NEAR(one.log_factor(facts), 0.1 + 2 * std::tanh(0.5 * 2 - 0.25), 1e-6);
-}
-
-TEST(Forecast, StaysWithinItsBoundsWhateverABlockShows) {
-  for (const float far : {-1e6F, -10.0F, 0.0F, 10.0F, 1e6F}) {
-    BlockFacts facts;
-    facts.fill(far);
-    const double factor = model_factor(facts);
-    EXPECT_GE(factor, 0.99 * kLeastFactor) << far;
-    EXPECT_LE(factor, 1.01 * kMostFactor) << far;
-  }
 }
 
 }  // namespace
