@@ -234,7 +234,7 @@ test('levels are priced, and one of them is queued', async () => {
   const page = await atTheDesk(visitor);
   await scanByKeys(page, 'priced');
   await page.getByRole('button', {name: 'Measure the levels'}).click();
-  await page.getByRole('button', {name: 'Queue fast'}).click({timeout: scanTakes_ms});
+  await page.getByRole('button', {name: 'Queue fast'}).click({timeout: 2 * scanTakes_ms});
   await page.waitForFunction(async () => {
     const {jobs} = await (await fetch('/api/v1/jobs')).json();
     return jobs.some((job) => job.kind === 'solve' && job.by !== 'scan' && job.state === 'done');
